@@ -253,6 +253,8 @@ FitName parse_fit_name(const std::string& text) {
 Fit fit(const Simulation& simulation, const FitRequest& request,
         const std::function<void(long, double)>& progress, const std::atomic<bool>* stop) {
   const auto begin = std::chrono::steady_clock::now();
+  if (!simulation.config().stop_at.empty())
+    throw ConfigError({"fit: a stop has no place beside recordings: leave stop_at out"});
   FitProblem problem(simulation, request);
   {  // what no fit can begin with is a mistake
     Eigen::VectorXd guess(static_cast<Eigen::Index>(problem.unknowns().size()));

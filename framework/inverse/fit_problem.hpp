@@ -8,7 +8,7 @@
 #include <Eigen/Core>
 
 #include <hamel/framework/inverse/fit.hpp>
-#include <hamel/framework/inverse/observed.hpp>
+#include <hamel/framework/tangent/observed.hpp>
 #include <hamel/framework/tangent/tangent_motion.hpp>
 
 namespace hamel {

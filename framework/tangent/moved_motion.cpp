@@ -14,13 +14,11 @@ void refuse_uncovered(const std::string& what, const RunPlan& plan) {
   if (plan.geometry == nullptr)
     mistakes.push_back(fmt::format("{}: the group of {} is not registered", what, name));
   if (plan.contacts != nullptr)
-    mistakes.push_back(fmt::format(
-        "{}: contacts of {} may slide or open: the change of mode has no tangent yet; leave "
-        "friction and restitution unset",
-        what, name));
-  if (!plan.config.events.empty() || !plan.config.stop_at.empty())
-    mistakes.push_back(fmt::format(
-        "{}: events and stops have no tangent yet: leave events and stop_at out", what));
+    mistakes.push_back(
+        fmt::format("{}: contacts of {} may slide or open: there is no tangent through an impact "
+                    "or a switch of "
+                    "contacts yet; leave friction and restitution unset",
+                    what, name));
   if (!mistakes.empty()) throw ConfigError(mistakes);
 }
 
@@ -30,12 +28,17 @@ MovedMotion::MovedMotion(const std::string& what, const MotionVariables& variabl
                          const Eigen::VectorXd& values)
     : run_(variables.with(values).build()) {
   refuse_uncovered(what, plan());
-  setup_ = plan().setup;
   map_ =
       std::make_unique<StepMap>(std::shared_ptr<const RunPlan>(std::shared_ptr<void>(), &plan()));
   start_ = start_at(variables, values);
-  setup_.configuration = map_->coordinates(start_);
-  setup_.velocity.assign(start_.xi.data(), start_.xi.data() + start_.xi.size());
+}
+
+Run MovedMotion::run_of(const MotionVariables& variables, const Eigen::VectorXd& values) const {
+  Run out = variables.with(values).build();
+  out.restart({.configuration = map_->coordinates(start_),
+               .velocity = {start_.xi.data(), start_.xi.data() + start_.xi.size()},
+               .momentum = {}});
+  return out;
 }
 
 MotionState MovedMotion::start_at(const MotionVariables& variables, const Eigen::VectorXd& values) {

@@ -25,14 +25,13 @@ class MovedMotion {
   StepMap& map() { return *map_; }
   const StepMap& map() const { return *map_; }
   const MotionState& start() const { return start_; }
+  /// A run of its own from this start: the run itself.
+  Run run_of(const MotionVariables& variables, const Eigen::VectorXd& values) const;
   /// The start at other values of the variables that are of the start alone.
   MotionState start_at(const MotionVariables& variables, const Eigen::VectorXd& values);
-  /// The kernel of the run itself, which chooses the steps.
-  std::unique_ptr<Kernel> kernel() const { return plan().run_kernel()(setup_); }
 
  private:
   Run run_;
-  KernelSetup setup_;
   std::unique_ptr<StepMap> map_;
   MotionState start_;
 };

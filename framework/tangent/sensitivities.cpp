@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include <hamel/framework/tangent/step_differences.hpp>
+#include <hamel/framework/tangent/observed.hpp>
 #include <hamel/framework/tangent/tangent_motion.hpp>
 
 namespace hamel {
@@ -18,13 +18,14 @@ std::vector<double> times_of_rows(const Simulation& simulation) {
   const std::vector<double> given = config.recorded_times();
   if (!given.empty()) return given;
   std::vector<double> out;
-  Simulation plain = simulation;
-  plain.with(&Config::no_exact, true).with(&Config::check, false);
+  Simulation plain = simulation.unobserved();
   plain.observe([&](const Snapshot& row) {
     out.push_back(row.time);
     return true;
   });
-  plain.run();
+  const Result result = plain.run();
+  // The event that ended it is met again on the way to the end.
+  if (result.stopped_by_event) out.back() = config.until;
   return out;
 }
 
@@ -71,7 +72,8 @@ constexpr double kLargestGrowth = 1e8;
 
 }  // namespace
 
-Sensitivities sensitivities(const Simulation& simulation, const std::vector<std::string>& names) {
+Sensitivities Simulation::sensitivities(const std::vector<std::string>& names) const {
+  const Simulation simulation = unobserved();
   const MotionVariables variables("sensitivities", simulation, names);
   TangentMotion motion("sensitivities", variables, variables.values(),
                        TangentMotion::Carries::errors);
@@ -80,17 +82,22 @@ Sensitivities sensitivities(const Simulation& simulation, const std::vector<std:
   SensitivityRows rows(*motion.motion().plan().system, out.names);
   Eigen::VectorXd values;
   Eigen::MatrixXd fine, coarse;
-  for (const double t : times_of_rows(simulation)) {
+  const bool given_times = !config().completed().recorded_times().empty();
+  for (const double t : times_of_rows(*this)) {
     out.status = motion.advance_to(t);
     if (!out.status.ok) break;
     const TangentState& now = motion.now();
-    const TangentState other{now.state, now.coarse, {}};
+    if (motion.over()) {
+      out.end_time.assign(now.time.begin(), now.time.end());
+      if (given_times) break;
+    }
+    const TangentState other{now.state, now.coarse, {}, now.time};
     if (!motion.derivative(now, coordinates_and_velocities, values, fine) ||
         !motion.derivative(other, coordinates_and_velocities, values, coarse)) {
       out.status = {false, 0, t, 0, "the coordinates have no derivative here"};
       break;
     }
-    rows.add(t, values, fine);
+    rows.add(now.state.time, values, fine);
     const Eigen::MatrixXd off = (fine - coarse).cwiseAbs();
     out.errors.resize(static_cast<size_t>(off.size()));
     for (Eigen::Index i = 0; i < off.rows(); ++i)
@@ -114,44 +121,34 @@ Sensitivities sensitivities(const Simulation& simulation, const std::vector<std:
   return out;
 }
 
-RunTangent tangent(const Simulation& simulation) {
-  const MotionVariables none("tangent", simulation, {});
-  TangentMotion motion("tangent", none, none.values(), TangentMotion::Carries::errors);
-  const MotionState& start = motion.motion().start();
-  const Eigen::Index n = start.xi.size();
-  Run run = simulation.build();
-  Eigen::MatrixXd columns(2 * n, 2 * n);
-  // The start that a build makes of one beside the constraints.
-  for (Eigen::Index j = 0; j < 2 * n; ++j) {
-    Eigen::VectorXd column;
-    const auto moved = [&](double x, Eigen::VectorXd& by) {
-      MotionState there;
-      displace(motion.motion().geometry(), start, Eigen::VectorXd::Unit(2 * n, j), x, there);
-      run.restart({.configuration = motion.motion().map().coordinates(there),
-                   .velocity = {there.xi.data(), there.xi.data() + n},
-                   .momentum = {}});
-      const Start& made = run.config().start;
-      motion.motion().geometry().from_coordinates(made.configuration, there.g.data());
-      there.xi = Eigen::Map<const Eigen::VectorXd>(made.velocity.data(), n);
-      return displacement(motion.motion().geometry(), start, there, by);
-    };
-    constexpr double e = 0x1p-8;
-    if (!ThreeDifferences::derivative(ThreeDifferences::fine, e, moved, column))
-      throw ConfigError({"tangent: the start has no derivative"});
-    columns.col(j) = column;
-  }
-  motion.begin_with(columns);
-  RunTangent out;
+Gradient Simulation::gradient(const std::string& objective,
+                              const std::vector<std::string>& names) const {
+  const Simulation simulation = unobserved();
+  const MotionVariables variables("gradient", simulation, names);
+  TangentMotion motion("gradient", variables, variables.values(), TangentMotion::Carries::errors);
+  ObservedQuantities quantity;
+  quantity.add(*motion.motion().plan().system, "gradient", objective);
+  const auto of_state = [&](MovedMotion& at, const MotionState& state, Eigen::VectorXd& out) {
+    quantity(at, state, out);
+  };
+  Gradient out;
+  for (const MotionVariable& one : variables.all()) out.names.push_back(one.name);
   out.status = motion.advance_to(simulation.config().completed().until);
+  if (!out.status.ok) return out;
   const TangentState& end = motion.now();
-  const auto size = static_cast<int>(2 * n);
-  out.matrix = NumberMatrix(size, size);
-  out.errors = NumberMatrix(size, size);
-  for (int i = 0; i < size; ++i)
-    for (int j = 0; j < size; ++j) {
-      out.matrix(i, j) = end.columns(i, j);
-      out.errors(i, j) = std::abs(end.columns(i, j) - end.coarse(i, j));
-    }
+  const TangentState other{end.state, end.coarse, {}, end.time};
+  Eigen::VectorXd value;
+  Eigen::MatrixXd fine, coarse;
+  if (!motion.derivative(end, of_state, value, fine) ||
+      !motion.derivative(other, of_state, value, coarse)) {
+    out.status = {false, 0, end.state.time, 0, objective + " has no derivative here"};
+    return out;
+  }
+  out.value = value[0];
+  for (Eigen::Index j = 0; j < fine.cols(); ++j) {
+    out.by.push_back(fine(0, j));
+    out.errors.push_back(std::abs(fine(0, j) - coarse(0, j)));
+  }
   return out;
 }
 

@@ -34,13 +34,13 @@ bool has_held_inputs(const RunPlan& plan) {
 TangentMotion::TangentMotion(const std::string& what, const MotionVariables& variables,
                              const Eigen::VectorXd& values, Carries carries)
     : motion_(what, variables, values),
+      run_(motion_.run_of(variables, values)),
       measure_(carries == Carries::errors),
       plain_(carries == Carries::ten_digits) {
   const RunPlan& plan = motion_.plan();
   const std::vector<double> units =
       natural_units(components_of(*plan.system), *plan.setup.mechanics, motion_.start().g.data());
   units_ = Eigen::Map<const Eigen::VectorXd>(units.data(), static_cast<Eigen::Index>(units.size()));
-  kernel_ = motion_.kernel();
   node_.state = motion_.start();
   if (carries != Carries::values && has_held_inputs(plan)) equation_ = RecordedLift::of(plan);
   if (carries == Carries::values) {
@@ -202,12 +202,13 @@ bool TangentMotion::push(const TangentState& from, const MotionState& to,
   return true;
 }
 
-// known: the end of the step as the run has it.
+// known: the end of the step as the run has it, which interpolates it at an event.
 Status TangentMotion::step(const TangentState& from, double t, TangentState& to,
-                           const MotionState* known) {
+                           const MotionState* known, bool by_dense_output) {
   MotionState end;
   if (Status status = motion_.map().step(from.state, t, end); !status.ok) return status;
-  if (known != nullptr) {
+  if (by_dense_output) end = *known;
+  else if (known != nullptr) {
     Eigen::VectorXd off;
     const double h = t - from.state.time;
     const bool near = displacement(motion_.geometry(), end, *known, off);
@@ -224,7 +225,7 @@ Status TangentMotion::step(const TangentState& from, double t, TangentState& to,
   };
   if (!pushed() && (std::exchange(projects_, true) || !pushed()))
     return no_tangent(from.state.time, "a step beside it fails: " + failure_);
-  to = {std::move(end), std::move(columns), std::move(coarse)};
+  to = {std::move(end), std::move(columns), std::move(coarse), {}};
   ++steps_;
   return {};
 }
@@ -232,21 +233,21 @@ Status TangentMotion::step(const TangentState& from, double t, TangentState& to,
 Status TangentMotion::advance_to(double t) {
   side_ = false;
   const bool chosen = motion_.plan().config.chooses_steps();
-  if (chosen) kernel_->set_end_time(t);
-  TangentState next;
-  for (;;) {
-    const double h = kernel_->next_step(), left = t - node_.state.time;
+  while (!run_.over()) {
+    const double h = run_.driver().next_step(), left = t - node_.state.time;
     const double tiny = 1e-10 * std::abs(chosen ? left == 0 ? 1 : left : h);
     if (std::abs(left) <= (chosen ? 0 : tiny) || left * h < 0) return {};
     if (!chosen && std::abs(left) < std::abs(h) - tiny) break;
-    if (Status status = kernel_->advance(1); !status.ok) return status;
-    kernel_->node(at_);
-    const MotionState end = motion_.map().state_of(at_.time, at_.coordinates, at_.velocity);
-    if (end.time == node_.state.time) return {};
-    if (Status status = step(node_, end.time, next, &end); !status.ok) return status;
-    node_ = std::move(next);
+    const double before = node_.state.time;
+    if (Status status = run_.step_towards(t); !status.ok) return status;
+    if (Status status = follow(); !status.ok) return status;
+    if (node_.state.time == before) return {};
   }
+  if (run_.over()) return {};
   if (Status status = step(node_, t, shown_, nullptr); !status.ok) return status;
+  if (misses_event(t))
+    return no_tangent(node_.state.time,
+                      "an event within it changes the state: choose steps by a tolerance");
   side_ = true;
   return {};
 }
@@ -258,9 +259,10 @@ bool TangentMotion::derivative(const TangentState& at, const Function& f, Eigen:
   out.setZero(here.size(), at.columns.cols());
   MotionState there;
   for (Eigen::Index j = 0; j < at.columns.cols(); ++j) {
-    const double e = size_of(at.state, at.columns.col(j), kernel_->next_step());
+    const double e = size_of(at.state, at.columns.col(j), run_.driver().next_step());
     const auto moved_state = [&](double x, Eigen::VectorXd& values) {
       displace(motion_.geometry(), at.state, at.columns.col(j), x, there);
+      if (at.time.size() > 0) there.time += x * at.time[j];
       f(motion_, there, values);
       return true;
     };
@@ -268,6 +270,7 @@ bool TangentMotion::derivative(const TangentState& at, const Function& f, Eigen:
       if (!ThreeDifferences::derivative(weights(), e, moved_state, column)) return false;
       out.col(j) = column;
     }
+    if (static_cast<size_t>(j) >= moved_.size()) continue;  // along the motion itself
     MovedVariable& moved = moved_[static_cast<size_t>(j)];
     if (!moved.moves_system()) continue;
     const auto moved_parameter = [&](double x, Eigen::VectorXd& values) {

@@ -8,6 +8,11 @@
 // the motion. Psi is defined beside the constraints of p too, where a kernel begins
 // with the admissible part of a velocity; a kernel that does not is given the state projected onto
 // them, Psi_p(Pi_p z), by z and by p alike.
+//   An event gamma = 0 that changes the state by z+ = D(z; p) happens earlier or later beside the
+// motion, dt = -(gamma_z Z + gamma_p)/gamma', Z the columns before it, f the rates of the state:
+//   Z+ = D_z (Z + f- dt) + D_p + D_t dt - f+ dt,    gamma' = gamma_t + gamma_z f-
+// and one that ends the run ends it at another time, Z+ = Z + f- dt. Source: Leine, Nijmeijer,
+// Dynamics and Bifurcations of Non-Smooth Mechanical Systems (2004), chapter 7.
 //   The error is measured: a second set of columns is carried with coarser differences, also where
 // the first is exact. Where ten digits will do, differences are plain.
 #pragma once
@@ -39,6 +44,7 @@ struct TangentState {
   MotionState state;
   Eigen::MatrixXd columns;  // 2n x q
   Eigen::MatrixXd coarse;   // the second set; empty where no errors are measured
+  Eigen::RowVectorXd time;  // of the state, where an event ended the run; else empty
 };
 
 class TangentMotion {
@@ -52,7 +58,9 @@ class TangentMotion {
   /// Steps to t, beyond the last one: chosen steps end there, of others a shorter one, from which
   /// the next do not go on.
   Status advance_to(double t);
-  /// At the last t.
+  /// Has an event ended the run before that?
+  bool over() const { return run_.over(); }
+  /// At the last t, or where the run ended.
   const TangentState& now() const { return side_ ? shown_ : node_; }
   /// Values of a state, and their derivative along each variable, rows x q. f(motion, state, out):
   /// a function of the state, and of the parameters of the motion.
@@ -74,23 +82,33 @@ class TangentMotion {
   void move_variable(const std::string& what, const MotionVariables& variables,
                      const Eigen::VectorXd& values, size_t i);
   void begin(const MotionVariables& variables, const Eigen::VectorXd& values);
-  Status step(const TangentState& from, double t, TangentState& to, const MotionState* known);
+  Status step(const TangentState& from, double t, TangentState& to, const MotionState* known,
+              bool by_dense_output = false);
   // A step of a motion as a displacement from `to`.
   bool step_beside(MovedMotion& motion, const MotionState& from, const MotionState& to,
                    Eigen::VectorXd& by);
   // Finds D_z Psi of a step by its equation; false where it has none, or another root.
   bool solve_equation(const MotionState& from, const MotionState& to);
+  // The last step of the run, and the event that ended it or changed its state there.
+  Status follow();
+  Status cross(const EventMet& met, TangentState& there, const MotionState* behind);
+  bool cross_columns(const EventMet& met, TangentState& there, const MotionState* behind,
+                     const Eigen::VectorXd& rate_before, const Eigen::VectorXd& rate_behind,
+                     Eigen::MatrixXd& columns);
+  bool rate_at(const MotionState& state, Eigen::VectorXd& out);
+  bool misses_event(double t);
   bool push(const TangentState& from, const MotionState& to, const std::array<double, 3>& weights,
             bool exact, const Eigen::MatrixXd& columns, Eigen::MatrixXd& out);
 
   MovedMotion motion_;
   std::vector<MovedVariable> moved_;
-  std::unique_ptr<Kernel> kernel_;  // of the run itself
+  Run run_;              // itself: it chooses the steps and meets events
+  std::size_t met_ = 0;  // of its events
+  long impacts_ = 0;
   std::unique_ptr<RecordedLift> equation_;
   RecordedLift::Unknowns unknowns_;
   Eigen::VectorXd units_;  // of displacements
   TangentState node_, shown_;
-  Snapshot at_;
   std::string failure_;  // of a step beside the motion
   bool side_ = false, measure_, plain_, projects_ = false;
   int steps_ = 0;

@@ -4,8 +4,10 @@
 #pragma once
 
 #include <chrono>
+#include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <hamel/framework/run/record/run_file.hpp>
@@ -50,6 +52,9 @@ class Driver {
   const RunPlan& plan() const { return plan_; }
   const SolverStats& stats() const { return kernel().stats(); }
   long impacts_met() const { return impacts_met_; }
+  /// Impacts by the names of their events.
+  const std::map<std::string, Impact>& impacts() const { return request_.impacts; }
+  double next_step() const { return kernel().next_step(); }
   /// The mechanics as the scheme treats it.
   std::shared_ptr<const Mechanics> acting() const;
   /// The balance of its energy, from its start on.

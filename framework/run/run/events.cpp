@@ -147,6 +147,12 @@ double Events::value(const Watched& w, const Snapshot& state) const {
   return w.event.value(state.time, state.coordinates, state.velocity);
 }
 
+double Events::value(const std::string& name, const Snapshot& state) const {
+  const auto found =
+      std::ranges::find_if(watched_, [&name](const Watched& w) { return w.event.name == name; });
+  return found == watched_.end() ? std::numeric_limits<double>::quiet_NaN() : value(*found, state);
+}
+
 void Events::begin(const Snapshot& state, std::vector<std::string>& mistakes) {
   time_ = state.time;
   for (Watched& w : watched_) {

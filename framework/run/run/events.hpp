@@ -45,6 +45,8 @@ class Events {
     bool stops;
   };
   Status look(const Snapshot& state, DenseOutput& dense, std::vector<Found>& found);
+  /// The value of an event that is watched, which crosses 0 there.
+  double value(const std::string& name, const Snapshot& state) const;
   /// Contacts that pull at the start already: there is no crossing to be found.
   std::vector<Found> lost_at_start(const Snapshot& state) const;
 

@@ -46,14 +46,16 @@ void release(std::unique_ptr<Driver>& driver) {
 
 }  // namespace
 
-Run::Run(std::unique_ptr<Driver> driver) : driver_(std::move(driver)) {}
-Run::Run(Run&& other) noexcept : driver_(std::move(other.driver_)) {
+Run::Run(std::unique_ptr<Driver> driver, std::shared_ptr<const Simulation> of)
+    : driver_(std::move(driver)), of_(std::move(of)) {}
+Run::Run(Run&& other) noexcept : driver_(std::move(other.driver_)), of_(std::move(other.of_)) {
   if (driver_ != nullptr) driver_->occupancy().move();
 }
 Run& Run::operator=(Run&& other) noexcept {
   if (this == &other) return *this;
   release(driver_);
   driver_ = std::move(other.driver_);
+  of_ = std::move(other.of_);
   if (driver_ != nullptr) driver_->occupancy().move();
   return *this;
 }

@@ -28,10 +28,13 @@
 namespace hamel {
 
 class Driver;
+class Simulation;
+struct RunTangent;  // framework/tangent/sensitivities.hpp
 
 class HAMEL_API Run {
  public:
-  explicit Run(std::unique_ptr<Driver> driver);
+  /// of: the builder that made it.
+  Run(std::unique_ptr<Driver> driver, std::shared_ptr<const Simulation> of);
   Run(Run&&) noexcept;
   Run& operator=(Run&&) noexcept;
   ~Run();
@@ -65,6 +68,9 @@ class HAMEL_API Run {
   const Snapshot& state(const StateParts& parts = {});
   /// Its time, without the measurements.
   double time();
+  /// The tangent from the start to the current state, by the run repeated with its present inputs:
+  /// its status is not ok where that does not lead here, since inputs were changed on the way.
+  RunTangent tangent();
   /// The events met so far.
   const std::vector<EventMet>& events() const;
   /// Has an event, an observer, or finish() ended it?
@@ -86,6 +92,7 @@ class HAMEL_API Run {
 
  private:
   std::unique_ptr<Driver> driver_;
+  std::shared_ptr<const Simulation> of_;
 };
 
 }  // namespace hamel

@@ -103,6 +103,21 @@ Simulation& Simulation::record_to(std::string path) {
   return *this;
 }
 
+Simulation Simulation::unobserved() const {
+  Simulation out = *this;
+  out.request_.observer = {};
+  out.request_.progress = {};
+  out.request_.records.clear();
+  out.request_.rows_kept.reset();
+  out.request_.resumed.clear();
+  Config& config = out.request_.config;
+  config.output_times.clear();
+  config.output_step.reset();
+  config.check = false;
+  config.no_exact = true;
+  return out;
+}
+
 std::vector<std::string> Simulation::mistakes() const {
   Mistakes mistakes;
   plan_run(*registry_, request_, own_.get(), Rows::always, mistakes);
@@ -121,7 +136,8 @@ Run Simulation::build() const {
   Mistakes mistakes;
   RunPlan plan = plan_run(*registry_, request_, own_.get(), Rows::asked_for, mistakes);
   mistakes.refuse();
-  return Run(std::make_unique<Driver>(std::move(plan), request_));
+  return {std::make_unique<Driver>(std::move(plan), request_),
+          std::make_shared<const Simulation>(*this)};
 }
 
 Result Simulation::run() const {

@@ -28,7 +28,9 @@
 namespace hamel {
 
 class Registry;
+struct Gradient;   // framework/tangent/sensitivities.hpp, as Sensitivities
 struct OwnSystem;  // own_system.hpp
+struct Sensitivities;
 
 struct SolverOptions {
   double tolerance = Config().tolerance;  // on |F| / scale
@@ -179,6 +181,14 @@ class HAMEL_API Simulation {
   /// Steps to the end: a loop over Run. Throws ConfigError with all mistakes, before the first
   /// step.
   Result run() const;
+  /// Derivatives along the run by parameters ("mass", "inertia2"), constant inputs and the start
+  /// ("start.omega"). ConfigError names the nearest.
+  Sensitivities sensitivities(const std::vector<std::string>& names) const;
+  /// Derivative of a quantity at the end, a column of the run or a formula of columns and
+  /// parameters ("x^2 + y^2"), by these.
+  Gradient gradient(const std::string& objective, const std::vector<std::string>& names) const;
+  /// Its motion without rows, files, and functions that watch it.
+  Simulation unobserved() const;
 
  private:
   const Registry* registry_;

@@ -27,6 +27,12 @@ Eigen::MatrixXd matrix_of(const NumberMatrix& m) {
   return out;
 }
 
+RunTangent tangent_of(const hamel::Simulation& simulation) {
+  hamel::Run run = simulation.build();
+  EXPECT_TRUE(run.complete().ok);
+  return run.tangent();
+}
+
 MotionState state_of(const hamel::Geometry& geometry, const hamel::Snapshot& now) {
   MotionState out;
   out.time = now.time;
@@ -90,7 +96,7 @@ TEST_P(TangentOf, IsThatOfWholeRuns) {
   for (const std::string& name : hamel::systems()) {
     SCOPED_TRACE(name);
     const hamel::Simulation simulation = short_run(name, GetParam());
-    const RunTangent t = hamel::tangent(simulation);
+    const RunTangent t = tangent_of(simulation);
     ASSERT_TRUE(t.status.ok) << t.status.reason;
     WholeRuns runs(simulation);
     Eigen::VectorXd direction(2 * runs.dim());
@@ -124,9 +130,9 @@ TEST(Tangent, OfARunIsTheProductOfItsParts) {
                   .velocity = run.state().velocity,
                   .momentum = {}});
     second.from(0.1);
-    const Eigen::MatrixXd a = matrix_of(hamel::tangent(hamel::Simulation(whole).until(0.1)).matrix),
-                          b = matrix_of(hamel::tangent(second).matrix),
-                          all = matrix_of(hamel::tangent(whole).matrix);
+    const Eigen::MatrixXd a = matrix_of(tangent_of(hamel::Simulation(whole).until(0.1)).matrix),
+                          b = matrix_of(tangent_of(second).matrix),
+                          all = matrix_of(tangent_of(whole).matrix);
     EXPECT_LT((b * a - all).lpNorm<Eigen::Infinity>(), 1e-10 * all.lpNorm<Eigen::Infinity>());
   }
 }
@@ -143,10 +149,9 @@ TEST(Tangent, ThereAndBackIsTheIdentity) {
                 .velocity = run.state().velocity,
                 .momentum = {}});
     back.from(0.1).until(0).step(-0.01);
-    const Eigen::MatrixXd a = matrix_of(hamel::tangent(there).matrix),
-                          b = matrix_of(hamel::tangent(back).matrix),
-                          still =
-                              matrix_of(hamel::tangent(hamel::Simulation(there).until(0)).matrix);
+    const Eigen::MatrixXd a = matrix_of(tangent_of(there).matrix),
+                          b = matrix_of(tangent_of(back).matrix),
+                          still = matrix_of(tangent_of(hamel::Simulation(there).until(0)).matrix);
     // still: the projection onto the linearised constraints.
     EXPECT_LT((b * a - still).lpNorm<Eigen::Infinity>(), 1e-9 * a.lpNorm<Eigen::Infinity>());
   }
@@ -158,8 +163,8 @@ TEST(Tangent, OfASymmetricSystemIsLeftInvariant) {
       short_run("chaplygin_sleigh", "lift").start({.velocity = {0.9, 1, 0}});
   hamel::Simulation moved = here;
   moved.start({.configuration = {2.1, -3, 7}, .velocity = {0.9, 1, 0}});
-  const Eigen::MatrixXd a = matrix_of(hamel::tangent(here).matrix),
-                        b = matrix_of(hamel::tangent(moved).matrix);
+  const Eigen::MatrixXd a = matrix_of(tangent_of(here).matrix),
+                        b = matrix_of(tangent_of(moved).matrix);
   EXPECT_LT((a - b).lpNorm<Eigen::Infinity>(), 1e-11);
 }
 
@@ -171,7 +176,7 @@ TEST(Tangent, OfDiagonalSuslovIsClosed) {
                                            .scheme("dop853")
                                            .step(0.05)
                                            .until(2);
-  const Eigen::MatrixXd j = matrix_of(hamel::tangent(simulation).matrix);
+  const Eigen::MatrixXd j = matrix_of(tangent_of(simulation).matrix);
   const double w = 0.5, t = 2, a = w * t;
   Eigen::Matrix3d hat;
   hat << 0, 0, -0.4, 0, 0, -0.3, 0.4, 0.3, 0;
@@ -185,6 +190,31 @@ TEST(Tangent, OfDiagonalSuslovIsClosed) {
   EXPECT_LT((j.topRightCorner(3, 3) - t * left * admissible).norm(), 1e-9);
   EXPECT_LT((j.bottomRightCorner(3, 3) - admissible).norm(), 1e-10);
   EXPECT_LT(j.bottomLeftCorner(3, 3).norm(), 1e-10);
+}
+
+/// Of a run that is stepped by hand: to its current state, with the inputs that it was given.
+TEST(Tangent, OfARunByHandIsThatOfItsSteps) {
+  const hamel::Simulation segway = short_run("segway", "lift")
+                                       .input("left_torque", 0)
+                                       .start({.velocity = {0.1, 1, 0, 4, 4, 0.2}});
+  hamel::Run run = segway.build();
+  run.input("left_torque", 0.7);
+  ASSERT_TRUE(run.step(4).ok);
+  const RunTangent found = run.tangent();
+  ASSERT_TRUE(found.status.ok) << found.status.reason;
+  const RunTangent expected =
+      tangent_of(hamel::Simulation(segway).input("left_torque", 0.7).until(0.04));
+  EXPECT_LT((matrix_of(found.matrix) - matrix_of(expected.matrix)).norm(), 1e-12);
+  run.restart({.velocity = {0, 2, 0, 8, 8, 0}});
+  ASSERT_TRUE(run.step(2).ok);
+  const RunTangent restarted = run.tangent();
+  ASSERT_TRUE(restarted.status.ok) << restarted.status.reason;
+  EXPECT_GT((matrix_of(found.matrix) - matrix_of(restarted.matrix)).norm(), 1e-3);
+  run.input("left_torque", -30);
+  ASSERT_TRUE(run.step(2).ok);
+  const RunTangent steered = run.tangent();
+  EXPECT_FALSE(steered.status.ok);
+  EXPECT_THAT(steered.status.reason, testing::HasSubstr("inputs were changed on the way"));
 }
 
 }  // namespace

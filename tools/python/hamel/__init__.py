@@ -24,6 +24,7 @@ from hamel._hamel import (
     InputTable as InputTable,
     Fit as Fit,
     FittedNumber as FittedNumber,
+    Gradient as Gradient,
     Jacobian as Jacobian,
     Linearisation as Linearisation,
     Mechanism as Mechanism,
@@ -64,7 +65,6 @@ from hamel._hamel import (
     simulate as simulate,
     steady as steady,
     study as study,
-    tangent as tangent,
 )
 
 list = _names

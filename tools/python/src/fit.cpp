@@ -1,4 +1,4 @@
-// Fits and derivatives of runs: hamel.fit, hamel.sensitivities, hamel.tangent.
+// Fits and derivatives of runs: hamel.fit, hamel.sensitivities, their results.
 #include <cmath>
 #include <limits>
 
@@ -164,9 +164,28 @@ void bind_fit(nb::module_& m) {
       .def_prop_ro("columns", [](const Sensitivities& s) { return columns_of(s.rows); })
       .def_ro("names", &Sensitivities::names)
       .def_ro("errors", &Sensitivities::errors, "the largest, of each derivative")
+      .def_ro("end_time", &Sensitivities::end_time,
+              "derivatives of the time at which an event ended the run, by each name")
       .def_ro("growth", &Sensitivities::growth)
       .def_ro("status", &Sensitivities::status)
       .def("csv", [](const Sensitivities& s) { return s.rows.csv(); });
+  nb::class_<Gradient>(m, "Gradient", "The derivative of a number at the end of a run, by names.")
+      .def("__bool__", [](const Gradient& g) { return g.status.ok; })
+      .def(
+          "__getitem__",
+          [](const Gradient& g, const std::string& name) {
+            for (size_t i = 0; i < g.by.size(); ++i)
+              if (g.names[i] == name) return g.by[i];
+            throw ConfigError({unknown_name("number", name, g.names)});
+          },
+          "name"_a)
+      .def_ro("value", &Gradient::value, "the number itself")
+      .def_ro("names", &Gradient::names)
+      .def_prop_ro(
+          "by", [](const Gradient& g) { return array(g.by); },
+          nb::sig("def by(self) -> numpy.typing.NDArray[numpy.float64]"))
+      .def_ro("errors", &Gradient::errors)
+      .def_ro("status", &Gradient::status);
   m.def("fit", &fit_by_python, "system"_a, "data"_a, "names"_a, nb::kw_only(),
         "sigma"_a = std::map<std::string, double>(),
         "observe"_a = std::map<std::string, std::string>(), "huber"_a = nb::none(), "options"_a,
@@ -180,23 +199,12 @@ void bind_fit(nb::module_& m) {
   m.def(
       "sensitivities",
       [](nb::handle system, const std::vector<std::string>& names, const nb::kwargs& options) {
-        return sensitivities(builder_of(system, options).simulation, names);
+        return builder_of(system, options).simulation.sensitivities(names);
       },
       "system"_a, "names"_a, "options"_a,
       nb::sig("def sensitivities(system: _System, names: collections.abc.Sequence[str], **options: "
               "typing.Any) -> Sensitivities"),
       "Derivatives of a run by parameters, constant inputs and its start, along it.");
-  m.def(
-      "tangent",
-      [](nb::handle system, const nb::kwargs& options) {
-        const RunTangent t = tangent(builder_of(system, options).simulation);
-        if (!t.status.ok) throw std::runtime_error(t.status.reason);
-        return matrix_of_numbers(t.matrix);
-      },
-      "system"_a, "options"_a,
-      nb::sig("def tangent(system: _System, **options: typing.Any) -> "
-              "numpy.typing.NDArray[numpy.float64]"),
-      "The tangent of a run, shape (2n, 2n): (eta, dxi) at its end by those at its start.");
 }
 
 }  // namespace hamel::python

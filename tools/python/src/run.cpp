@@ -1,6 +1,7 @@
 // A run to be stepped by hand, hamel.Run, and what it shows: State, Status, SolverStats.
 #include <algorithm>
 #include <atomic>
+#include <stdexcept>
 
 #include "bindings.hpp"
 
@@ -231,6 +232,17 @@ void bind_run(nb::module_& m) {
             return NamedState{freely(self, [t](Run& run) { return run.at(t); }), self.names};
           },
           "t"_a, "The state at a time [s] within the last step, by dense output.")
+      .def(
+          "tangent",
+          [](ByHand& self) {
+            const RunTangent t = freely(self, [](Run& run) { return run.tangent(); });
+            if (!t.status.ok) throw std::runtime_error(t.status.reason);
+            return matrix(t.matrix.values, static_cast<size_t>(t.matrix.columns));
+          },
+          nb::sig("def tangent(self) -> numpy.typing.NDArray[numpy.float64]"),
+          "The tangent from the start to the current state, shape (2n, 2n): (eta, dxi) by (eta, "
+          "dxi), of the run repeated with its present inputs. RuntimeError where that does not "
+          "lead here.")
       .def(
           "finish",
           [](ByHand& self) {

@@ -97,6 +97,24 @@ void bind_simulation(nb::module_& m) {
           [](const Builder& self) { return result_of(run(self), self.source, self.functions); },
           nb::sig("def run(self) -> Result"), "Steps to the end, the interpreter free.")
       .def(
+          "sensitivities",
+          [](const Builder& self, const std::vector<std::string>& names) {
+            const Away free;
+            return self.simulation.sensitivities(names);
+          },
+          "names"_a,
+          "Derivatives along the run by parameters, constant inputs and the start "
+          "('start.omega').")
+      .def(
+          "gradient",
+          [](const Builder& self, const std::string& objective,
+             const std::vector<std::string>& names) {
+            const Away free;
+            return self.simulation.gradient(objective, names);
+          },
+          "objective"_a, "names"_a,
+          "The derivative of a quantity or formula at the end of the run, 'x**2' written 'x^2'.")
+      .def(
           "__getattr__",
           [](nb::object self, const std::string& name) {
             if (name.starts_with("_")) throw nb::attribute_error(name.c_str());

@@ -47,3 +47,27 @@ def test_a_fit_returns_the_numbers_of_its_recording():
     assert fit.undetermined == []
     with pytest.raises(hamel.ConfigError, match="offset"):
         hamel.fit("chaplygin_sleigh", data, ["ofset"])
+
+
+def test_derivatives_of_a_run_are_those_of_its_neighbours():
+    def sleigh():
+        builder = hamel.simulate("chaplygin_sleigh").offset(0.2).start(velocity=[1, 1, 0])
+        return builder.tolerance(relative=1e-11).until(2)
+
+    along = sleigh().sensitivities(["offset", "start.omega"])
+    assert along and along.names == ["offset", "start.omega"]
+    end = hamel.run("chaplygin_sleigh", offset=0.2, velocity=[1, 1, 0], rtol=1e-11, until=2)
+    far = hamel.run("chaplygin_sleigh", offset=0.2001, velocity=[1, 1, 0], rtol=1e-11, until=2)
+    near = hamel.run("chaplygin_sleigh", offset=0.1999, velocity=[1, 1, 0], rtol=1e-11, until=2)
+    expected = (far["x"][-1] - near["x"][-1]) / 2e-4
+    assert along["d(x)/d(offset)"][-1] == pytest.approx(expected, abs=1e-6)
+    gradient = sleigh().gradient("x", ["offset"])
+    assert gradient and gradient["offset"] == pytest.approx(expected, abs=1e-6)
+    assert gradient.value == pytest.approx(end["x"][-1], abs=1e-9)
+    run = sleigh().build()
+    run.advance_to(2)
+    matrix = run.tangent()
+    assert matrix.shape == (6, 6)
+    assert matrix[3, 3] == pytest.approx(along["d(omega)/d(start.omega)"][-1], abs=1e-7)
+    with pytest.raises(hamel.ConfigError, match="did you mean 'offset'"):
+        sleigh().gradient("x", ["ofset"])

@@ -1,4 +1,4 @@
-#include <hamel/framework/inverse/observed.hpp>
+#include <hamel/framework/tangent/observed.hpp>
 
 #include <fmt/format.h>
 
