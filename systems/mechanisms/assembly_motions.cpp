@@ -86,7 +86,7 @@ void Assembly::note_what_stands(const Multibody& system, const Redundancy& redun
 
   const std::string all = names([](size_t) { return true; });
   const std::string slipping = names([&](size_t i) { return rows.contacts[i].slips; });
-  const bool slips = !model_.contact_laws.empty();
+  const bool slips = !slipping.empty();  // a joint with friction is no contact
   const Mobility mobility = mobility_at(system, g), sticks = mobility_at(system, g, true);
   const int root = vehicle_root(system.tree(g.data()));
   if (!mobility.root)

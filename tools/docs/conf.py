@@ -37,7 +37,9 @@ _EQUATION = re.compile(r"\(M(\d+)\)")
 
 
 def _number_equations(app, pagename, templatename, context, doctree):
-    """Makes (M16) an anchor if it begins a line of a code block of the method, and otherwise a link to the anchor."""
+    """Makes (M16) a link to its equation."""
+    if pagename == "method":
+        app.add_css_file("katex/katex.css")
     body = context.get("body")
     if not body or "(M" not in body:
         return
@@ -46,16 +48,10 @@ def _number_equations(app, pagename, templatename, context, doctree):
     def link(match):
         return f'<a class="equation" href="{there}#M{match[1]}">(M{match[1]})</a>'
 
-    def numbered(block):  # of the method: the anchors
-        place = re.compile(r"^((?:<[^>]+>)*)\(M(\d+)\)", re.M)
-        return "<pre>" + place.sub(r'\1<span id="M\2" class="place">(M\2)</span>', block[5:])
-
-    # Code blocks, links, headings and tags are not changed.
-    parts = re.split(r"(<pre>.*?</pre>|<a .*?</a>|<h\d.*?</h\d>|<[^>]+>)", body, flags=re.S)
+    # Equations (make/mathematics.py makes their anchors), code blocks, links, headings and tags are not changed.
+    parts = re.split(r"(<figure class=\"equations\">.*?</figure>|<pre>.*?</pre>|<a .*?</a>|<h\d.*?</h\d>|<[^>]+>)", body, flags=re.S)
     for i, part in enumerate(parts):
-        if part.startswith("<pre>") and pagename == "method":
-            parts[i] = numbered(part)
-        elif not part.startswith("<"):
+        if not part.startswith("<"):
             parts[i] = _EQUATION.sub(link, part)
     context["body"] = "".join(parts)
 
@@ -68,6 +64,7 @@ def _break_paths(app, pagename, templatename, context, doctree):
 
 
 def setup(app):
+    app.config.html_static_path.append(str(Path(app.srcdir).parent / "typeset"))  # KaTeX's style and fonts
     app.connect("html-page-context", _number_equations)
     app.connect("html-page-context", _break_paths)
     app.config.breathe_projects["hamel"] = str(Path(app.srcdir).parent / "doxygen" / "xml")

@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 import gallery
+import mathematics
 import notebooks
 import printed
 
@@ -33,6 +34,7 @@ class Site:
     def __init__(self, root, build):
         self.root, self.pages = root, root / "tools/docs/pages"
         self.out = build / "docs/source"
+        self.mathematics = mathematics.Typesetter(Path(__file__).parent / "typeset.mjs", build / "docs/npm")
         self.placed = {}  # (README, anchor or "") -> page of the site with its anchor
         self.copied = set()
 
@@ -131,7 +133,10 @@ class Site:
             text = self.rewritten(text, f"tools/docs/pages/{page}")
             self.write(page, INCLUDE.sub(lambda m: f"```{{include}} /{'' if m[1].startswith('generated') else 'readme/'}{m[1]}\n{m[2]}", text))
         for file in {file for file, _ in self.placed}:
-            self.write(f"readme/{file}", self.rewritten((self.root / file).read_text(), file))
+            text = self.rewritten((self.root / file).read_text(), file)
+            if self.placed[file, ""] == "/method.md":
+                text = self.mathematics.typeset(text)
+            self.write(f"readme/{file}", text)
 
     def clean(self):
         for path in self.out.rglob("*"):
