@@ -167,7 +167,7 @@ std::string NonsmoothKernel::solve_end(const std::vector<ImpulseOf>& on, double 
   return "";
 }
 
-// What the contacts do at the node, and what they have begun to do.
+// Modes of the contacts at the node, and events where they change.
 void NonsmoothKernel::take_modes(const ContactStates& before) {
   for (int i = 0; i < count(); ++i) {
     ContactState& state = states_[static_cast<size_t>(i)];

@@ -1,0 +1,133 @@
+// Brakes, dry friction, stops and walls, against closed facts.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <hamel/systems/mechanisms/mechanism.hpp>
+#include <hamel/systems/simulate_typed.hpp>
+
+#include "../framework/run/refusal.hpp"
+#include "slipping.hpp"
+
+namespace hamel {
+namespace {
+
+using namespace test;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+Mechanism flywheel(double rate) {
+  Mechanism m("flywheel");
+  m.body("wheel", {.mass = 1, .at = {0, 0, 1}, .inertia = {1, 1, 2}});
+  m.hinge("axle", kWorld, "wheel", {.at = {0, 0, 1}});
+  m.motor("axle");
+  m.brake("axle");
+  m.start("axle.rate", rate);
+  return m;
+}
+
+// J w' = 0.5 - b(t) until it rests, b = 2 t up to t = 1, then 2, from t = 3 on 5 - t: at rest until
+// b = 0.5, at t = 4.5, then J w' = t - 4.5, and 0.5 behind t = 5.
+TEST(Brake, IsAnInput) {
+  const auto run = [](bool jumps) {
+    Simulation out = slipping(flywheel(1));
+    out.input("axle.torque", 0.5);
+    InputTable b;
+    b.times = {0, 1, 3, 5, 8};
+    b.values = {0, 2, 2, 0, 0};
+    if (jumps) {
+      b.times = {0, 2, 8};
+      b.values = {2, 0, 0};
+      b.hold = true;
+    }
+    out.input("axle.brake", b);
+    return out.until(6).run();
+  };
+  const double J = 2;
+  const Result r = run(false);
+  ASSERT_TRUE(r.status.ok) << r.status.reason;
+  ASSERT_THAT(names(r), ElementsAre("axle.sticks", "axle.slips"));
+  const double at_one = 1 + (0.5 - 1) / J, rests = 1 + at_one * J / 1.5;
+  EXPECT_NEAR(time_of(r, "axle.sticks"), rests, 1e-9);
+  EXPECT_NEAR(time_of(r, "axle.slips"), 4.5, 1e-9);
+  EXPECT_NEAR(last(r, "axle.rate"), (0.125 + 0.5) / J, 1e-9);
+  EXPECT_LT(r.energy_error_max, 1e-9);
+  const Result step = run(true);
+  ASSERT_TRUE(step.status.ok) << step.status.reason;
+  EXPECT_NEAR(time_of(step, "axle.sticks"), J / 1.5, 1e-9);
+  EXPECT_NEAR(time_of(step, "axle.slips"), 2, 1e-9);
+  EXPECT_NEAR(last(step, "axle.rate"), 4 * 0.5 / J, 1e-9);
+}
+
+// Beside dry friction of the joint; a brake that nobody sets does nothing.
+TEST(Brake, AddsToFriction) {
+  Mechanism m("flywheel");
+  m.body("wheel", {.mass = 1, .at = {0, 0, 1}, .inertia = {1, 1, 2}});
+  m.hinge("axle", kWorld, "wheel", {.at = {0, 0, 1}, .friction = 0.3});
+  m.brake("axle", {.least = 0, .most = 5});
+  m.start("axle.rate", 1);
+  const Result none = slipping(m).until(1).run();
+  EXPECT_NEAR(last(none, "axle.rate"), 1 - 0.15, 1e-10);
+  EXPECT_NEAR(last(slipping(m).input("axle.brake", 0.7).until(1).run(), "axle.rate"), 0.5, 1e-10);
+  EXPECT_THAT(refusal([&] { slipping(m).input("axle.brake", -1).until(1).run(); }),
+              HasSubstr("axle.brake"));
+  Mechanism wrong("wrong");
+  wrong.body("wheel", {.mass = 1, .at = {0, 0, 1}, .inertia = {1, 1, 2}});
+  wrong.hinge("axle", kWorld, "wheel", {.at = {0, 0, 1}});
+  wrong.brake("axel");
+  EXPECT_THAT(refusal([&] { (void)wrong.model(); }), HasSubstr("did you mean 'axle'?"));
+  wrong = flywheel(1);
+  wrong.brake("axle");
+  EXPECT_THAT(refusal([&] { (void)wrong.model(); }), HasSubstr("this joint has a brake already"));
+}
+
+Mechanism dry_slider(double friction) {
+  Mechanism m("block");
+  m.body("block", {.mass = 1, .at = {0, 0, 0.1}, .box = {0.2, 0.2, 0.2}});
+  m.slider("way", kWorld, "block", {.axis = {1, 0, 0}, .friction = friction});
+  m.start("way.rate", 1);
+  return m;
+}
+TEST(DryFriction, ABlockStopsAndRests) {
+  const Result r = slipping(dry_slider(2)).until(1000).run();
+  ASSERT_TRUE(r.status.ok) << r.status.reason;
+  ASSERT_THAT(names(r), ElementsAre("way.sticks"));
+  EXPECT_NEAR(time_of(r, "way.sticks"), 0.5, 1e-13);
+  EXPECT_NEAR(last(r, "way.position"), 0.25, 1e-13);
+  EXPECT_EQ(last(r, "way.rate"), 0);
+  EXPECT_LE(r.steps, 12);
+}
+
+TEST(Stops, AJointStrikesItsEnds) {
+  Mechanism m("block");
+  m.body("block", {.mass = 1, .at = {0, 0, 0.1}, .box = {0.2, 0.2, 0.2}});
+  m.slider("way", kWorld, "block", {.axis = {1, 0, 0}, .restitution = 0.5, .stop = {-0.5, 1}});
+  m.start("way.rate", 2);
+  const Result r = slipping(m).until(3).run();
+  ASSERT_TRUE(r.status.ok) << r.status.reason;
+  ASSERT_THAT(names(r), ElementsAre("way.high.strikes", "way.low.strikes"));
+  EXPECT_NEAR(r.events[0].time, 0.5, 1e-13);
+  EXPECT_NEAR(r.events[1].time, 0.5 + 1.5, 1e-13);
+  EXPECT_NEAR(last(r, "way.rate"), 0.5, 1e-13);
+}
+
+// Two masses on one rail, of which neither passes the other: e = 1 exchanges equal ones' speeds.
+TEST(Walls, TwoBlocksOnARail) {
+  Mechanism m("rail");
+  for (const char* name : {"a", "b"}) {
+    m.body(name, {.mass = 1, .at = {0, 0, 0.1}, .box = {0.2, 0.2, 0.2}});
+    m.slider(name, kWorld, name, {.axis = {1, 0, 0}});
+  }
+  m.wall("buffer", {.distance = "b.position - a.position - width",
+                    .restitution = 1,
+                    .constants = {{"width", {0.2}}}});
+  m.start({{"b.position", 1}, {"a.rate", 2}});
+  const Result r = slipping(m).until(1).run();
+  ASSERT_TRUE(r.status.ok) << r.status.reason;
+  ASSERT_THAT(names(r), ElementsAre("buffer.strikes"));
+  EXPECT_NEAR(r.events[0].time, 0.4, 1e-13);
+  EXPECT_NEAR(last(r, "a.rate"), 0, 1e-13);
+  EXPECT_NEAR(last(r, "b.rate"), 2, 1e-13);
+}
+
+}  // namespace
+}  // namespace hamel
