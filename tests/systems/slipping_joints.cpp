@@ -58,6 +58,27 @@ TEST(Brake, IsAnInput) {
   EXPECT_NEAR(last(step, "axle.rate"), 4 * 0.5 / J, 1e-9);
 }
 
+// J w' = 0.5 - b(t), in steps of one size that an input ends where it bends or jumps.
+TEST(Brake, IsAnInputOfStepsOfOneSize) {
+  const double J = 2;
+  for (const bool jumps : {false, true}) {
+    InputTable b{.times = {0, 1, 2}, .values = {2, 2, 0.8}};
+    if (jumps) b = {.times = {0, 1, 2}, .values = {2, 0.8, 0.8}, .hold = true};
+    const Result r = simulate(flywheel(2))
+                         .slip()
+                         .input("axle.torque", 0.5)
+                         .input("axle.brake", b)
+                         .scheme("nonsmooth")
+                         .step(0.07)
+                         .until(1.4)
+                         .run();
+    ASSERT_TRUE(r.status.ok) << r.status.reason;
+    const double lost = jumps ? 0.3 * 0.4 : 1.5 * 0.4 - 1.2 * 0.08;
+    EXPECT_NEAR(last(r, "axle.rate"), 2 - (1.5 + lost) / J, 1e-12) << jumps;
+    EXPECT_EQ(r.steps, 21);  // 20, and one that ends at t = 1
+  }
+}
+
 // Beside dry friction of the joint; a brake that nobody sets does nothing.
 TEST(Brake, AddsToFriction) {
   Mechanism m("flywheel");

@@ -23,39 +23,18 @@ constexpr double kClosedGap = 1e-9, kNoSlip = 1e-10;
 
 }  // namespace
 
-KernelFactory contact_kernels(KernelFactory smooth, std::shared_ptr<const Geometry> geometry,
-                              const SystemModel& system, std::shared_ptr<RunContacts> contacts) {
-  auto model = std::make_shared<SystemModel>(system);
-  return [smooth = std::move(smooth), geometry = std::move(geometry), model = std::move(model),
-          contacts = std::move(contacts)](const KernelSetup& setup) -> std::unique_ptr<Kernel> {
-    auto own = contacts != nullptr ? contacts : std::make_shared<RunContacts>(geometry, *model);
-    own->drive(setup.inputs);
-    return std::make_unique<ContactKernel>(smooth, setup, std::move(own));
-  };
-}
-
 ContactKernel::ContactKernel(KernelFactory smooth, KernelSetup setup,
                              std::shared_ptr<RunContacts> contacts)
-    : smooth_(std::move(smooth)),
-      setup_(std::move(setup)),
-      contacts_(std::move(contacts)),
-      limit_(std::copysign(kNever, setup_.step)),
+    : KernelOfContacts(std::move(smooth), std::move(setup), std::move(contacts)),
       references_(static_cast<size_t>(count()), Eigen::Vector2d(1, 0)),
-      g_(setup_.geometry->size()),
       move_(g_) {
-  time_ = setup_.from;
-  coordinates_ = setup_.configuration;
-  velocity_ = setup_.velocity;
-  begin();
+  ContactKernel::begin();
 }
 
-// From time_, coordinates_ and velocity_: in the modes that are known, else in those of the state.
 void ContactKernel::begin() {
+  before_ = nullptr;
   failure_.clear();
-  setup_.geometry->from_coordinates(coordinates_, g_.data());
-  xi_ = Eigen::Map<const Eigen::VectorXd>(velocity_.data(),
-                                          static_cast<Eigen::Index>(velocity_.size()));
-  dynamics().evaluate(time_, g_.data(), xi_);
+  evaluate_start();
   events_.clear();
   int strikes = -1;
   if (!contacts_->known()) dynamics().accelerate(ContactStates(static_cast<size_t>(count())));
@@ -87,25 +66,8 @@ void ContactKernel::begin() {
   if (!contacts_->switches.empty()) state(contacts_->switches.back().after, {});
 }
 
-void ContactKernel::restart(double t, std::span<const double> coordinates,
-                            std::span<const double> velocity, double step) {
-  time_ = t;
-  coordinates_.assign(coordinates.begin(), coordinates.end());
-  velocity_.assign(velocity.begin(), velocity.end());
-  setup_.step = step;
-  limit_ = std::copysign(kNever, step);
-  contacts_->set_known(false);
-  before_ = nullptr;
-  begin();
-}
-
 std::unique_ptr<Kernel> ContactKernel::another(const KernelSetup& setup) const {
   return std::make_unique<ContactKernel>(smooth_, setup, contacts_);
-}
-
-void ContactKernel::turn_back() {
-  throw ConfigError(
-      {"turn_back: a motion with friction or impacts is not determined backwards in time"});
 }
 
 void ContactKernel::set_end_time(double t) {

@@ -32,16 +32,11 @@
 
 #include <Eigen/Core>
 
-#include <hamel/framework/run/run/run_contacts.hpp>
+#include <hamel/framework/run/run/kernel_of_contacts.hpp>
 
 namespace hamel {
 
-/// Kernels of the modes of a run from the kernel of any problem. contacts: those of the run; null:
-/// a kernel for itself, as dense output and measurements need one.
-KernelFactory contact_kernels(KernelFactory smooth, std::shared_ptr<const Geometry> geometry,
-                              const SystemModel& system, std::shared_ptr<RunContacts> contacts);
-
-class ContactKernel final : public Kernel {
+class ContactKernel final : public KernelOfContacts {
  public:
   ContactKernel(KernelFactory smooth, KernelSetup setup, std::shared_ptr<RunContacts> contacts);
 
@@ -57,9 +52,6 @@ class ContactKernel final : public Kernel {
   double beginning_time() const override { return of_last_step().beginning_time(); }
   void set_end_time(double t) override;
   double next_step() const override { return now_->next_step(); }
-  void turn_back() override;
-  void restart(double t, std::span<const double> coordinates, std::span<const double> velocity,
-               double step) override;
   std::unique_ptr<Kernel> another(const KernelSetup& setup) const override;
   void clear_history() override { now_->clear_history(); }
   bool interpolate(double t, Snapshot& out) override;
@@ -76,12 +68,10 @@ class ContactKernel final : public Kernel {
   };
 
   Kernel& of_last_step() const { return before_ != nullptr ? *before_ : *now_; }
-  ContactDynamics& dynamics() const { return *contacts_->dynamics(); }
-  int count() const { return dynamics().count(); }
   ContactState& contact(int i) const { return contacts_->states()[static_cast<size_t>(i)]; }
   FollowedContact& followed(int i) const { return contacts_->followed()[static_cast<size_t>(i)]; }
 
-  void begin();
+  void begin() override;
   // dynamics() at the state of now_, or of a snapshot.
   void evaluate_node();
   void evaluate(const Snapshot& state);
@@ -122,9 +112,6 @@ class ContactKernel final : public Kernel {
   double first_step(double step);
   bool too_many(double t);
 
-  KernelFactory smooth_;
-  KernelSetup setup_;
-  std::shared_ptr<RunContacts> contacts_;
   // A kernel of one set of modes, which stays as it is when the run has others.
   struct Piece {
     std::shared_ptr<ContactStates> states;
@@ -134,7 +121,6 @@ class ContactKernel final : public Kernel {
   Kernel* now_ = nullptr;
   std::shared_ptr<ContactStates> now_states_;  // of its piece
   Kernel* before_ = nullptr;                   // of the last step, where a switch ended it
-  double limit_;
   double usual_step_ = 0;  // that a step would have been followed by, had it not been taken again
   double stop_ = std::numeric_limits<double>::infinity();  // of a slip, where a step ends
   long steps_ = 0;
@@ -143,9 +129,8 @@ class ContactKernel final : public Kernel {
   Gates at_node_;
   bool knows_node_ = false;  // at_node_ is of now_, where dynamics() is
   // The state of a switch.
-  double time_ = 0, ends_ = 0;  // ends_: of its impacts, where they accumulate
-  Eigen::VectorXd g_, xi_, move_;
-  std::vector<double> coordinates_, velocity_;
+  double ends_ = 0;  // of its impacts, where they accumulate
+  Eigen::VectorXd move_;
   std::vector<std::pair<std::string, double>> events_;
   Snapshot snapshot_;
   mutable Snapshot shown_;

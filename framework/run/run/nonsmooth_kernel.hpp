@@ -16,22 +16,18 @@
 #pragma once
 
 #include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
-#include <hamel/framework/run/run/run_contacts.hpp>
+#include <hamel/framework/run/run/kernel_of_contacts.hpp>
 
 namespace hamel {
 
-/// As contact_kernels() of contact_kernel.hpp; smooth: of lift.
-KernelFactory nonsmooth_kernels(KernelFactory smooth, std::shared_ptr<const Geometry> geometry,
-                                const SystemModel& system, std::shared_ptr<RunContacts> contacts);
-
-class NonsmoothKernel final : public Kernel {
+class NonsmoothKernel final : public KernelOfContacts {
  public:
+  /// smooth: of lift.
   NonsmoothKernel(KernelFactory smooth, KernelSetup setup, std::shared_ptr<RunContacts> contacts);
 
   Status advance(long count) override;
@@ -46,9 +42,6 @@ class NonsmoothKernel final : public Kernel {
   double beginning_time() const override { return before_.time; }
   void set_end_time(double t) override;
   double next_step() const override { return left_; }
-  void turn_back() override;
-  void restart(double t, std::span<const double> coordinates, std::span<const double> velocity,
-               double step) override;
   std::unique_ptr<Kernel> another(const KernelSetup& setup) const override;
   void clear_history() override { lift_->clear_history(); }
   bool interpolate(double t, Snapshot& out) override;
@@ -57,15 +50,13 @@ class NonsmoothKernel final : public Kernel {
  private:
   static constexpr double kNoSpeed = 1e-10;  // of what the energy allows
 
-  ContactDynamics& dynamics() const { return *contacts_->dynamics(); }
-  int count() const { return dynamics().count(); }
-
-  void begin();
-  void go_to(double t, const double* g, std::span<const double> velocity);
+  void begin() override;
+  // How long the next step is, which an input may end.
+  Status find_length();
   // A step with these impulses at its beginning: into end_, g1_, gaps_.
   Status take_step(const Eigen::VectorXd& p);
   // gamma of P behind it.
-  void find_gamma(Eigen::VectorXd& out);
+  Status find_gamma(Eigen::VectorXd& out);
   Status press();
   bool others_strike();
   std::string end_step();
@@ -76,17 +67,13 @@ class NonsmoothKernel final : public Kernel {
   Status take_one();
   Status fail(const std::string& reason, double residual = 0) const;
 
-  KernelFactory smooth_;
-  KernelSetup setup_;
-  std::shared_ptr<RunContacts> contacts_;
   std::unique_ptr<Kernel> lift_;
-  double limit_, left_ = 0;  // of the step that an input has ended
+  double left_ = 0;    // of the step that an input has ended
+  double length_ = 0;  // of the next
   long steps_ = 0, whole_ = 0;
-  // The node, the one before, and the end of a step without Q.
-  double time_ = 0;
-  Eigen::VectorXd g_, xi_, g1_, xi1_;
-  std::vector<double> coordinates_, velocity_;
-  Snapshot before_, end_, unstruck_;
+  // The end of a step without Q, the node before; the step without what strikes in it.
+  Eigen::VectorXd g1_, xi1_;
+  Snapshot end_, before_, unstruck_;
   ContactStates states_;
   std::vector<ImpulseOf> on_;
   std::vector<char> strikes_;

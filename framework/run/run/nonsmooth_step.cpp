@@ -23,7 +23,7 @@ constexpr double kSecant = 1e-6;
 Status NonsmoothKernel::take_step(const Eigen::VectorXd& p) {
   pushed_ = xi_ + given_;
   for (Eigen::Index i = 0; i < p.size(); ++i) pushed_ += p[i] * responses_.col(i);
-  lift_->restart(time_, coordinates_, std::span(pushed_.data(), velocity_.size()), left_);
+  lift_->restart(time_, coordinates_, std::span(pushed_.data(), velocity_.size()), length_);
   lift_->set_end_time(limit_);
   const Status status = lift_->advance(1);
   if (!status.ok) return status;
@@ -33,13 +33,23 @@ Status NonsmoothKernel::take_step(const Eigen::VectorXd& p) {
   return status;
 }
 
-void NonsmoothKernel::find_gamma(Eigen::VectorXd& out) {
+// An input that jumps or bends within a step ends it there.
+Status NonsmoothKernel::find_length() {
+  length_ = left_;
+  if (setup_.inputs == nullptr) return {};
+  const Status status = lift_->advance(1);  // from the node
+  length_ = lift_->time() - time_;
+  return status;
+}
+
+Status NonsmoothKernel::find_gamma(Eigen::VectorXd& out) {
   const Mechanics& system = dynamics().mechanics();
   const double h = end_.time - time_;
   Eigen::VectorXd middle(g_.size()), move(xi_.size());
   setup_.geometry->inverse(g_.data(), middle.data());
   setup_.geometry->compose(middle.data(), g1_.data(), middle.data());
-  if (!setup_.geometry->tau_inverse(middle.data(), move.data())) move = h * xi_;
+  if (!setup_.geometry->tau_inverse(middle.data(), move.data()))
+    return fail("nonsmooth: the step leaves the domain of the retraction");
   const Eigen::VectorXd half = move / 2;
   setup_.geometry->tau(half.data(), middle.data());
   setup_.geometry->compose(g_.data(), middle.data(), middle.data());
@@ -50,6 +60,7 @@ void NonsmoothKernel::find_gamma(Eigen::VectorXd& out) {
     if (row >= first) out[i] = gaps_[row - first] / h;
     else out[i] = a_.row(row).dot(move) / h - b_[row];
   }
+  return {};
 }
 
 // The impulses P of the contacts that are on, and the step behind them.
@@ -59,7 +70,7 @@ Status NonsmoothKernel::press() {
   for (int i = 0; i < count(); ++i)
     if (on_[static_cast<size_t>(i)] != ImpulseOf::none)
       speed = std::max(speed, dynamics().speed_scale(i));
-  dynamics().set_up_impulses(contacts_->states(), on_, left_ / 2, true);
+  dynamics().set_up_impulses(contacts_->states(), on_, length_ / 2, true);
   const int m = dynamics().impulse_count();
   given_ = dynamics().given_change();
   responses_.resize(xi_.size(), m);
@@ -75,7 +86,7 @@ Status NonsmoothKernel::press() {
   Status status = take_step(p_);
   if (!status.ok || m == 0) return status;
   gamma_.resize(m);
-  find_gamma(gamma_);
+  if (status = find_gamma(gamma_); !status.ok) return status;
   Eigen::VectorXd now(m), move(m), missed(m), best = p_;
   double least = std::numeric_limits<double>::infinity();
   for (int k = 0; k < kSecants; ++k) {
@@ -88,7 +99,7 @@ Status NonsmoothKernel::press() {
     status = take_step(p_);
     if (!status.ok) return status;
     ++iterations_;
-    find_gamma(now);
+    if (status = find_gamma(now); !status.ok) return status;
     missed = now - gamma_ - metric_ * move;
     const double size = std::max(c.lpNorm<Eigen::Infinity>(), speed);
     const double error = size > 0 ? missed.lpNorm<Eigen::Infinity>() / size : 0;
@@ -155,7 +166,7 @@ std::string NonsmoothKernel::solve_end(const std::vector<ImpulseOf>& on, double 
       if (bounces(law, row)) c[i] += law.restitution * rates_[row];
       for (Eigen::Index j = 0; j < p_.size(); ++j)
         if (rows_of_p_[static_cast<size_t>(j)] == row) done[i] = p_[j];
-    } else {
+    } else if (bounces(law, *law.normal)) {
       c[i] += law.tangential_restitution * rates_[row];
     }
   }
@@ -259,7 +270,8 @@ void NonsmoothKernel::find_no_speeds() {
   dynamics().accelerate(ContactStates(static_cast<size_t>(count())));
   for (int i = 0; i < count(); ++i)
     no_speeds_[static_cast<size_t>(i)] =
-        kNoSpeed * (dynamics().speed_scale(i) + std::abs(left_) * dynamics().acceleration_scale(i));
+        kNoSpeed *
+        (dynamics().speed_scale(i) + std::abs(length_) * dynamics().acceleration_scale(i));
 }
 
 Status NonsmoothKernel::take_one() {
@@ -267,6 +279,12 @@ Status NonsmoothKernel::take_one() {
   lift_->state(before_, {});
   before_.step = steps_;
   iterations_ = 0;
+  if (Status status = find_length(); !status.ok || length_ == 0) {
+    status.step = steps_ + 1;
+    lift_->restart(time_, coordinates_, velocity_, left_);
+    lift_->set_end_time(limit_);
+    return status;
+  }
   system.constraints(time_, g_.data(), a_, b_);
   rates_ = a_ * xi_ - b_;
   for (int i = 0; i < count(); ++i) {

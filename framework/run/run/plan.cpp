@@ -307,8 +307,9 @@ RunPlan plan_run(const Registry& registry, const RunRequest& request, const OwnS
   if (!system.contact_laws.empty()) {
     plan.contacts = std::make_shared<RunContacts>(plan.geometry, system);
     plan.smooth = plan.kernel;
-    plan.with_contacts =
-        method.scheme->name == Nonsmooth::name() ? &nonsmooth_kernels : &contact_kernels;
+    plan.with_contacts = method.scheme->name == Nonsmooth::name()
+                             ? &kernels_with_contacts<NonsmoothKernel>
+                             : &kernels_with_contacts<ContactKernel>;
     plan.kernel = plan.with_contacts(plan.smooth, plan.geometry, system, nullptr);
     system.exact = nullptr;
   }

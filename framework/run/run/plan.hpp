@@ -131,7 +131,7 @@ struct RunPlan {
   std::shared_ptr<RunContacts> contacts;  // null where none may slide or open
   std::unique_ptr<Events> events;
   KernelSetup setup;
-  /// contact_kernels(), or those of the scheme nonsmooth.
+  /// Kernels of the run's contacts: that locate their switches, or of the scheme nonsmooth.
   KernelFactory (*with_contacts)(KernelFactory smooth, std::shared_ptr<const Geometry> geometry,
                                  const SystemModel& system,
                                  std::shared_ptr<RunContacts> contacts) = nullptr;
