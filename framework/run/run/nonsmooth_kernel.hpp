@@ -73,7 +73,7 @@ class NonsmoothKernel final : public KernelOfContacts {
   long steps_ = 0, whole_ = 0;
   // The end of a step without Q, the node before; the step without what strikes in it.
   Eigen::VectorXd g1_, xi1_;
-  Snapshot end_, before_, unstruck_;
+  Snapshot end_, before_, unstruck_, measured_;
   ContactStates states_;
   std::vector<ImpulseOf> on_;
   std::vector<char> strikes_;

@@ -258,6 +258,7 @@ std::string NonsmoothKernel::end_step() {
   left_ = ends ? setup_.step : left_ - h;
   if (ends) ++whole_;
   ++steps_;
+  lift_->state(measured_, {});
   lift_->restart(time_, coordinates_, velocity_, left_);
   lift_->set_end_time(limit_);
   take_modes(before);
