@@ -73,7 +73,7 @@ void NonsmoothKernel::state(Snapshot& out, const StateParts& parts) const {
   out.step = steps_;
   out.iterations = iterations_;
   if (!parts.measures || steps_ == 0) return;
-  // Of the step, which lift has left for the node.
+  // Measures of the step, which lift has left for the node.
   out.constraint_rates = measured_.constraint_rates;
   out.constraint = measured_.constraint;
   out.time_offset = measured_.time_offset;
