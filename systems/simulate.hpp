@@ -16,6 +16,7 @@
 #include <hamel/framework/ensemble/ensemble.hpp>
 #include <hamel/framework/inverse/fit.hpp>
 #include <hamel/framework/inverse/motion_plan.hpp>
+#include <hamel/framework/pages/pages.hpp>
 #include <hamel/framework/run/run/simulation.hpp>
 #include <hamel/framework/study/study.hpp>
 #include <hamel/framework/tangent/sensitivities.hpp>

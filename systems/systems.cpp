@@ -11,7 +11,7 @@
 #endif
 #include <hamel/systems/mechanisms/library.hpp>
 #include <hamel/systems/mechanisms/mechanism_file.hpp>
-#include <hamel/systems/mechanisms/urdf.hpp>
+#include <hamel/systems/mechanisms/urdf/urdf.hpp>
 #include <hamel/systems/n_trailer.hpp>
 #include <hamel/systems/recorded_groups.hpp>
 #include <hamel/systems/recorded_systems.hpp>

@@ -15,7 +15,7 @@
 #include <hamel/framework/mechanics/system_model.hpp>
 #include <hamel/framework/run/data/event_formula.hpp>
 #include <hamel/framework/run/run/events.hpp>
-#include <hamel/framework/run/run/plan.hpp>
+#include <hamel/framework/run/run/plan/plan.hpp>
 
 namespace hamel {
 namespace {

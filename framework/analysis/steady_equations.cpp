@@ -10,7 +10,7 @@
 #include <hamel/framework/lie/decompositions.hpp>
 #include <hamel/framework/mechanics/natural_units.hpp>
 #include <hamel/framework/run/names/registry.hpp>
-#include <hamel/framework/run/run/start_names.hpp>
+#include <hamel/framework/run/run/plan/start_names.hpp>
 
 namespace hamel::reduced {
 namespace {

@@ -14,4 +14,11 @@ std::string placed(const std::map<std::string, std::string>& where, std::string 
   return place == where.end() ? mistake : fmt::format("{}: {}", place->second, mistake);
 }
 
+std::string no_journal(const std::string& folder, const std::string& system) {
+  return fmt::format(
+      "folder: got '{}', but a journal cannot have '{}', a system of this program: expected none, "
+      "or a registered system, a file or its text",
+      folder, system);
+}
+
 }  // namespace hamel

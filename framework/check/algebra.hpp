@@ -2,6 +2,7 @@
 // installed.
 #pragma once
 
+#include <algorithm>
 #include <limits>
 #include <stdexcept>
 #include <vector>
@@ -120,6 +121,10 @@ struct Algebra {
   /// |q(g^-1 h) - q(e)|: how far apart two elements are.
   double distance(const Vector& g, const Vector& h) const {
     return (coordinates(compose(inverse(g), h)) - coordinates(identity())).norm();
+  }
+  /// Growth of round-off by products with g and g^-1: |Ad(g)| |Ad(g^-1)|/n, 1 of a rotation.
+  double growth(const Vector& g) const {
+    return std::max(1.0, Ad(g).norm() * Ad(inverse(g)).norm() / n);
   }
   bool abelian() const {
     for (int i = 0; i < n; ++i) {

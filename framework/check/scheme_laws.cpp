@@ -1,10 +1,10 @@
 // The claims of a scheme, measured on every registered system.
 #include <hamel/framework/check/scheme_laws.hpp>
 
-#include <array>
-#include <cstdio>
 #include <map>
 #include <set>
+
+#include <fmt/format.h>
 
 namespace hamel {
 namespace {
@@ -42,12 +42,15 @@ class SchemeSuite {
     for (const std::string& name : registry_.systems()) measure(name);
     for (const auto& [order, least] : least_order_) {
       report_.push_back({"order not above " + std::to_string(order) + " on every system",
-                         std::max(0.0, least - order), order_bound(order)});
+                         std::max(0.0, least - order), order_bound(order),
+                         fmt::format("at least order {:.3g}, expected {} on some", least, order)});
     }
     for (const auto& [order, error] : largest_return_) {
-      report_.push_back({"order " + std::to_string(order) +
-                             ": does not return to the start on some system, as it claims",
-                         error > 0 ? kNotReversible / error : 2, 1});
+      report_.push_back(
+          {"order " + std::to_string(order) +
+               ": does not return to the start on some system, as it claims",
+           error > 0 ? kNotReversible / error : 2, 1,
+           fmt::format("ends {:.3g} from it, expected at least {:g}", error, kNotReversible)});
     }
     return std::move(report_);
   }
@@ -84,7 +87,7 @@ class SchemeSuite {
                                  .until(kUntil)
                                  .run();
     if (reference.status.ok) exact_ = end_of(reference);
-    else report_.push_back({"the reference by dop853: " + name, 1, 0});
+    else report_.push_back({"the reference by dop853: " + name, 1, 0, reference.status.reason});
     return reference.status.ok;
   }
   std::string named(double s) const {
@@ -93,10 +96,8 @@ class SchemeSuite {
   }
 
   static std::string order_seen(double order, bool shown, int claimed) {
-    std::array<char, 64> text{};
     if (!shown) return "no error above round-off to measure an order of";
-    std::snprintf(text.data(), text.size(), "order %.3g, expected at least %d", order, claimed);
-    return text.data();
+    return fmt::format("order {:.3g}, expected at least {}", order, claimed);
   }
   void add(const std::string& law, double measured, double bound) {
     report_.push_back({law + where_, measured, bound});
@@ -121,6 +122,7 @@ class SchemeSuite {
       if (order > claim.order - bound) break;
     }
     add("the run ends", result.status.ok ? 0 : 1, 0);
+    report_.back().seen = result.status.reason;
     if (!result.status.ok) return;
     add("order at least " + std::to_string(claim.order), std::max(0.0, claim.order - order), bound);
     report_.back().seen = order_seen(order, shown, claim.order);

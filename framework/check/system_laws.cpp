@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include <fmt/format.h>
+
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/lie/decompositions.hpp>
 #include <hamel/framework/metric/equations_of_motion.hpp>
@@ -38,13 +40,14 @@ void inputs_of_zero(const SystemModel& model, const Geometry& geometry, const St
   const Eigen::VectorXd zero = driven();
   report.push_back(
       {"inputs of zero add nothing", (zero - acting(*model.mechanics)).norm(), algebraic});
-  double idle = 0;
-  for (InputTable& table : tables) {
-    table.values = {1};
-    if ((driven() - zero).norm() == 0) ++idle;
-    table.values = {0};
+  std::string idle;
+  for (size_t i = 0; i < tables.size(); ++i) {
+    tables[i].values = {1};
+    if ((driven() - zero).norm() == 0) idle += " " + model.inputs[i].name;
+    tables[i].values = {0};
   }
-  report.push_back({"every input acts", idle, 0});
+  report.push_back({"every input acts", idle.empty() ? 0.0 : 1.0, 0,
+                    idle.empty() ? "" : "no force and no row change with" + idle});
 }
 
 // The start, and four configurations near it.
@@ -186,11 +189,14 @@ LawReport check_system(const SystemModel& model, double until, const Geometry* g
                     check::algebraic});
   const Eigen::VectorXd values = dense::symmetric_eigenvalues(inertia);
   report.push_back(
-      {"inertia positive definite", values.minCoeff() > 1e-14 * values.maxCoeff() ? 0.0 : 1.0, 0});
+      {"inertia positive definite", values.minCoeff() > 1e-14 * values.maxCoeff() ? 0.0 : 1.0, 0,
+       fmt::format("eigenvalues from {:.3g} to {:.3g}", values.minCoeff(), values.maxCoeff())});
   if (rows.rows() > 0) {
     const Eigen::VectorXd singular = dense::svd(rows).values;
     report.push_back({"constraint rows independent",
-                      singular.minCoeff() > 1e-12 * singular.maxCoeff() ? 0.0 : 1.0, 0});
+                      singular.minCoeff() > 1e-12 * singular.maxCoeff() ? 0.0 : 1.0, 0,
+                      fmt::format("singular values from {:.3g} to {:.3g}", singular.minCoeff(),
+                                  singular.maxCoeff())});
   }
   const Start start = check::admissible_start(model, geometry);
   if (start.velocity.empty()) return report;

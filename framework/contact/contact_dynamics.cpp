@@ -33,7 +33,7 @@ ContactDynamics::ContactDynamics(std::shared_ptr<const Geometry> geometry,
       always_(rows_of_none(*mechanics_, laws_)),
       metric_(mechanics_->dim(), static_cast<int>(always_.size())),
       pivots_(3 * count()),
-      problem_(3 * count(), count()) {
+      problems_{Problem(3 * count(), count()), Problem(3 * count(), count())} {
   for (const ContactLaw& law : laws_) constant_loads_.push_back(law.load);
   const int n = mechanics_->dim(), k = mechanics_->constraint_count(), most = 3 * count();
   const auto contacts = static_cast<size_t>(count());
@@ -323,9 +323,9 @@ const Eigen::VectorXd& ContactDynamics::reactions() {
   return reactions_;
 }
 
-double ContactDynamics::reaction_power() {
+double ContactDynamics::reaction_power() const {
   double out = 0;
-  for (int i = 0; i < count(); ++i) out += tangential_[static_cast<size_t>(i)].dot(slip(i));
+  for (int i = 0; i < count(); ++i) out += friction_power(i);
   return out;
 }
 

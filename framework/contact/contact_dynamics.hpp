@@ -27,12 +27,14 @@
 // (1996); Leine, Nijmeijer, Dynamics and Bifurcations of Non-Smooth Mechanical Systems (2004).
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/LU>
 
 #include <hamel/framework/contact/contact_problem.hpp>
 #include <hamel/framework/contact/pivots.hpp>
@@ -95,7 +97,9 @@ class ContactDynamics {
   /// N M_A C^T of a contact that slides.
   double coefficient(int i) const { return coefficient_[static_cast<size_t>(i)]; }
   /// The power of these reactions, l . (A xi - b): of friction.
-  double reaction_power();
+  double reaction_power() const;
+  /// The part of contact i in it.
+  double friction_power(int i) const { return tangential_[static_cast<size_t>(i)].dot(slip(i)); }
   /// The rates of gap_rate() and slip() at acceleration().
   double gap_acceleration(int i) const;
   Eigen::Vector2d slip_rate(int i) const;
@@ -122,7 +126,13 @@ class ContactDynamics {
   /// from those of a problem next to this one. Returns why there are none.
   std::string solve_impulses(const Eigen::MatrixXd& g, const Eigen::VectorXd& c, bool near,
                              ContactStates& states);
-  auto impulses() const { return problem_.p(); }
+  /// Do their rows depend on each other by this G?
+  bool impulses_depend(const Eigen::MatrixXd& g);
+  /// The next problems are next to none.
+  void forget_impulses() {
+    for (Problem& problem : problems_) problem.of.forget();
+  }
+  auto impulses() const { return problem().p(); }
   /// Behind it: are their rows dependent? A G that is not theirs hides it.
   bool shared() const { return shared_; }
   /// G = W M_A C^T of these.
@@ -167,12 +177,13 @@ class ContactDynamics {
   // G of responses_ into k_; the solution with k_ and c_.
   void find_metric();
   std::string solve_problem(const char* level, bool near = false);
+  std::string names_of_blocks() const;
   void set_up_impact(const ContactStates& states, const std::vector<char>& strikes, bool beside);
   std::string why_coupled() const;
   std::string solve_impact(Eigen::VectorXd& xi);
   bool others_leave(const ContactStates& states, const std::vector<char>& strikes,
                     const Eigen::VectorXd& xi);
-  bool dependent() const;
+  bool dependent();
   // K l = right side, in k_work_ and multipliers_, of m rows; where they depend on each other the
   // reactions are those of the least sum of squares, each in units of its bound.
   void solve_rows(int m);
@@ -205,7 +216,16 @@ class ContactDynamics {
   Eigen::VectorXd work_m_;
   std::vector<ContactBlock> blocks_;
   std::vector<int> block_contacts_;
-  ContactProblem problem_;
+  // Problems at the end of a step, and elsewhere; each continues its last solution.
+  struct Problem {
+    Problem(int unknowns, int contacts) : of(unknowns, contacts), rank(unknowns, unknowns) {}
+    ContactProblem of;
+    Eigen::FullPivLU<Eigen::MatrixXd> rank;
+  };
+  std::array<Problem, 2> problems_;
+  bool at_end_ = false;
+  ContactProblem& problem() { return problems_[at_end_ ? 1 : 0].of; }
+  const ContactProblem& problem() const { return problems_[at_end_ ? 1 : 0].of; }
   bool shared_ = false;  // the last problem had dependent rows
   double time_ = 0;
 };

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <hamel/framework/contact/contact_dynamics.hpp>
 
@@ -12,6 +11,7 @@ namespace hamel {
 // The contact problem (4) of the contacts that strike and, `beside`, of those that are closed.
 void ContactDynamics::set_up_impact(const ContactStates& states, const std::vector<char>& strikes,
                                     bool beside) {
+  at_end_ = false;
   on_.clear();
   blocks_.clear();
   block_contacts_.clear();
@@ -43,12 +43,10 @@ std::string ContactDynamics::why_coupled() const {
       most = std::max(most, entry);
     }
   if (!(coupling > 1e-12 * size)) return "";
-  std::vector<std::string> names;
-  for (const int i : block_contacts_) names.push_back(law(i).name);
   return fmt::format(
       "simultaneous_impacts: {} are closed at once at t = {:.10g} and coupled ({:.3g} of {:.3g} "
       "1/kg): the impact depends on their order, which rigid bodies do not have",
-      fmt::join(names, ", "), time_, coupling, size);
+      names_of_blocks(), time_, coupling, size);
 }
 
 std::string ContactDynamics::solve_impact(Eigen::VectorXd& xi) {
@@ -56,7 +54,8 @@ std::string ContactDynamics::solve_impact(Eigen::VectorXd& xi) {
   if (std::string why = solve_problem("impulse"); !why.empty()) return why;
   xi = xi_;
   for (size_t i = 0; i < on_.size(); ++i)
-    xi += problem_.p()[static_cast<Eigen::Index>(i)] * responses_.col(static_cast<Eigen::Index>(i));
+    xi +=
+        problem().p()[static_cast<Eigen::Index>(i)] * responses_.col(static_cast<Eigen::Index>(i));
   return "";
 }
 

@@ -64,6 +64,9 @@ class ContactProblem {
   /// From there too, without a search: false where what the contacts do is another.
   bool refine(const Matrix& g, const Vector& c, const std::vector<ContactBlock>& blocks);
 
+  /// Nothing is next to a problem that was before.
+  void forget() { size_ = 0; }
+
   /// Behind solve(): P, and what each contact does.
   auto p() const { return p_.head(size_); }
   const std::vector<ContactAnswer>& answers() const { return answers_; }

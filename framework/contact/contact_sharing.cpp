@@ -100,15 +100,15 @@ ContactProblem::Outcome ContactDynamics::give_way(int m, bool near) {
   right_.col(0).head(m) = k_.diagonal().head(m);
   give_way_by(kGivesWay, m);
   ContactProblem::Outcome out = ContactProblem::Outcome::one;
-  if (!near || !problem_.refine(g, c, blocks_)) {
+  if (!near || !problem().refine(g, c, blocks_)) {
     for (double compliance = 1; compliance > kGivesWay; compliance /= 10) {
       give_way_by(compliance, m);
-      out = compliance < 1 ? problem_.solve_next(g, c, blocks_) : problem_.solve(g, c, blocks_);
+      out = compliance < 1 ? problem().solve_next(g, c, blocks_) : problem().solve(g, c, blocks_);
       if (out != ContactProblem::Outcome::one) return out;
     }
   }
   k_.diagonal().head(m) = right_.col(0).head(m);
-  problem_.refine(g, c, blocks_);
+  problem().refine(g, c, blocks_);
   return out;
 }
 

@@ -5,6 +5,7 @@ namespace hamel {
 
 void ContactDynamics::set_up_impulses(const ContactStates& states, const std::vector<ImpulseOf>& on,
                                       double time, bool along_slip) {
+  at_end_ = !along_slip;
   on_.clear();
   blocks_.clear();
   block_contacts_.clear();
@@ -39,6 +40,11 @@ void ContactDynamics::impulse_metric(Eigen::MatrixXd& out) const {
   for (int i = 0; i < impulse_count(); ++i)
     for (int j = 0; j < impulse_count(); ++j)
       out(i, j) = row_times(impulse_row(i), responses_.col(j));
+}
+
+bool ContactDynamics::impulses_depend(const Eigen::MatrixXd& g) {
+  k_.topLeftCorner(g.rows(), g.cols()) = g;
+  return dependent();
 }
 
 std::string ContactDynamics::solve_impulses(const Eigen::MatrixXd& g, const Eigen::VectorXd& c,

@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <Eigen/LU>
 
 #include <hamel/framework/contact/contact_dynamics.hpp>
 
@@ -56,20 +55,27 @@ void ContactDynamics::add_block(int i, bool slides, const Eigen::Vector2d& d) {
 
 // Are rows of several contacts dependent? Then their reactions are not determined. Those of given
 // loads may be: their problem is that of a convex function, and the motion is unique.
-bool ContactDynamics::dependent() const {
+bool ContactDynamics::dependent() {
   if (blocks_.size() < 2) return false;
-  const auto missing = [this](const std::vector<int>& rows) {
-    if (rows.empty()) return Eigen::Index(0);
-    Eigen::FullPivLU<Eigen::MatrixXd> factors(k_(rows, rows));
-    factors.setThreshold(1e-10);
-    return std::ssize(rows) - factors.rank();
+  const auto missing = [this](bool loads_alone) {
+    Eigen::Index m = 0;
+    for (const Row& row : on_) {
+      if (loads_alone && law(row.contact).normal) continue;
+      Eigen::Index k = 0;
+      const auto i = &row - on_.data();
+      for (size_t j = 0; j < on_.size(); ++j)
+        if (!loads_alone || !law(on_[j].contact).normal)
+          k_work_(m, k++) = k_(i, static_cast<Eigen::Index>(j));
+      ++m;
+    }
+    if (m == 0) return m;
+    auto& rank = problems_[at_end_ ? 1 : 0].rank;
+    rank.compute(k_work_.topLeftCorner(m, m));
+    rank.setThreshold(1e-10);
+    return m - rank.rank();
   };
-  std::vector<int> all, loads;
-  for (int i = 0; i < static_cast<int>(on_.size()); ++i) {
-    all.push_back(i);
-    if (!law(on_[static_cast<size_t>(i)].contact).normal) loads.push_back(i);
-  }
-  return missing(all) > missing(loads);
+  const Eigen::Index all = missing(false);
+  return all > 0 && all > missing(true);
 }
 
 void ContactDynamics::find_metric() {
@@ -81,8 +87,8 @@ void ContactDynamics::find_metric() {
 
 std::string ContactDynamics::solve_problem(const char* level, bool near) {
   const auto m = static_cast<Eigen::Index>(on_.size());
-  std::vector<std::string> names;
-  for (const int i : block_contacts_) names.push_back(law(i).name);
+  const auto g = k_.topLeftCorner(m, m);
+  const auto c = c_.head(m);
   shared_ = dependent();
   if (shared_ &&
       std::ranges::any_of(block_contacts_, [this](int i) { return !(law(i).share > 0); }))
@@ -90,23 +96,31 @@ std::string ContactDynamics::solve_problem(const char* level, bool near) {
         "undetermined_reactions: the reactions of {} are not determined by the motion: their rows "
         "are dependent; leave out a contact, or let them share (distribution = "
         "\"equal_compliance\")",
-        fmt::join(names, ", "));
-  const auto outcome = shared_ ? give_way(static_cast<int>(m), near)
-                               : problem_.solve(k_.topLeftCorner(m, m), c_.head(m), blocks_);
+        names_of_blocks());
+  auto outcome = ContactProblem::Outcome::one;
+  if (shared_) outcome = give_way(static_cast<int>(m), near);
+  else if (!near || ConvexContacts::applies(g, blocks_) || !problem().refine(g, c, blocks_))
+    outcome = problem().solve(g, c, blocks_);  // (of given loads that with the least sum)
   if (outcome == ContactProblem::Outcome::one) return "";
   const ContactLaw& law = this->law(block_contacts_.front());
   if (blocks_.size() > 1) {
     return fmt::format(
         "jammed: no {} of the contacts {} was found that satisfies Coulomb's law at t = {:.10g}",
-        level, fmt::join(names, ", "), time_);
+        level, names_of_blocks(), time_);
   }
-  const int count = problem_.count();
+  const int count = problem().count();
   return fmt::format(
-      "painleve: {} {} of contact '{}' satisf{} Coulomb's law at t = {:.10g}, friction = {}, the "
+      "painleve: {} of contact '{}' {} Coulomb's law at t = {:.10g}, friction = {}, the "
       "coefficient of its normal reaction is {:.4g}: rigid bodies have no unique motion here; a "
       "smaller friction has",
-      count == 0 ? std::string("no") : std::to_string(count), level, law.name,
-      count == 1 ? "ies" : "y", time_, law.friction, k_(0, 0));
+      count > 1 ? fmt::format("{} {}s", count, level) : fmt::format("no {}", level), law.name,
+      count > 1 ? "satisfy" : "satisfies", time_, law.friction, k_(0, 0));
+}
+
+std::string ContactDynamics::names_of_blocks() const {
+  std::vector<std::string> names;
+  for (const int i : block_contacts_) names.push_back(law(i).name);
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 bool ContactDynamics::slides_on(ContactState& state, int i, bool told) {
@@ -128,19 +142,20 @@ bool ContactDynamics::slides_on(ContactState& state, int i, bool told) {
 // The mode of a contact from the solution of its block.
 void ContactDynamics::take_answer(ContactState& state, size_t block) const {
   const ContactBlock& of = blocks_[block];
-  const ContactAnswer answer = problem_.answers()[block];
+  const ContactAnswer answer = problem().answers()[block];
   if (direction_count(law(block_contacts_[block])) == 0 && answer != ContactAnswer::opens) return;
   state.mode = answer == ContactAnswer::opens                         ? ContactMode::open
                : answer == ContactAnswer::sticks && of.tangential > 0 ? ContactMode::rolls
                                                                       : ContactMode::slides;
   if (state.mode != ContactMode::slides || of.tangential == 0) return;
   Eigen::Vector2d d(0, 0);
-  d.head(of.tangential) = -problem_.p().segment(of.first + (of.normal ? 1 : 0), of.tangential);
+  d.head(of.tangential) = -problem().p().segment(of.first + (of.normal ? 1 : 0), of.tangential);
   if (d.norm() > 0) state.direction = d / d.norm();
   state.begins = of.tangential == 2;
 }
 
 std::string ContactDynamics::decide(ContactStates& states, const std::vector<char>& slides) {
+  at_end_ = false;
   on_.clear();
   blocks_.clear();
   block_contacts_.clear();

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <hamel/framework/batch/engine.hpp>
+#include <hamel/framework/batch/places.hpp>
 #include <hamel/framework/ensemble/collector.hpp>
 #include <hamel/framework/ensemble/lane_members.hpp>
 
@@ -103,13 +104,20 @@ Ensemble& Ensemble::lanes(bool use) {
   lanes_ = use;
   return *this;
 }
+void Ensemble::check_folder() const {
+  if (config_.model && !settings_.folder.empty())
+    throw ConfigError({no_journal(settings_.folder, config_.run.system)});
+}
+
 EnsembleResult Ensemble::run() const {
+  check_folder();
   EnsembleResult out;
   Session(*registry_, config_, settings_, settings_.shard, lanes_, out).run();
   return out;
 }
 
 EnsembleResult Ensemble::merge() const {
+  check_folder();
   EnsembleResult out;
   Session(*registry_, config_, settings_, {}, lanes_, out).merge();
   return out;
@@ -136,6 +144,10 @@ Member Ensemble::member(long index) const {
   } catch (const ConfigError&) {  // the reason of its failure
   }
   return out;
+}
+
+Simulation Ensemble::simulation(const Member& member) const {
+  return ensemble::simulation(*registry_, config_, member.config);
 }
 
 }  // namespace hamel

@@ -26,6 +26,8 @@ namespace hamel {
 
 class Registry;
 class Run;
+class Simulation;
+struct SystemModel;
 
 /// Values of one name over the members: a parameter ("skew", "inertia3"), an input, "speed",
 /// "start.omega" (a velocity or a coordinate), "start.configuration", "start.velocity".
@@ -91,7 +93,10 @@ struct HAMEL_API EnsembleConfig {
   bool covariance = false;
   std::vector<long> trajectories = {};  // members whose runs the program writes and shows, too
   std::string data = {};                // the text of the system's file, read once
-  std::string origin = {}, text = {};   // the ensemble's file, for the record
+  /// A system of the program in place of a registered one or a file: maker(mechanism), with
+  /// run.system as its name. No journal can have it: no folder.
+  std::function<SystemModel(const Parameters&)> model = {};
+  std::string origin = {}, text = {};  // the ensemble's file, for the record
 
   /// "file:line:column" by key, "vary.skew"; empty for an ensemble made in a program.
   std::map<std::string, std::string> where = {};
@@ -111,9 +116,10 @@ struct HAMEL_API EnsembleConfig {
 };
 
 /// Throws ConfigError with all mistakes of the file, each with line and column.
-/// data: the text of the system's file; empty: it is read.
+/// data: the text of the system's file; empty: it is read. model: EnsembleConfig::model.
 HAMEL_API EnsembleConfig parse_ensemble(const std::string& text, const std::string& origin,
-                                        const Registry& registry, const std::string& data = "");
+                                        const Registry& registry, const std::string& data = "",
+                                        std::function<SystemModel(const Parameters&)> model = {});
 HAMEL_API EnsembleConfig read_ensemble(const std::string& path, const Registry& registry);
 
 /// A member that has no kept values, and why.
@@ -203,9 +209,11 @@ class HAMEL_API Ensemble : public Batch<Ensemble> {
   EnsembleResult merge() const;
   /// A single member: the same values as in the whole.
   Member member(long index) const;
+  /// Its run, but for feedback.
+  Simulation simulation(const Member& member) const;
 
  private:
-  EnsembleResult begun(Shard part) const;
+  void check_folder() const;
 
   const Registry* registry_;
   EnsembleConfig config_;

@@ -51,7 +51,7 @@ void read_data(EnsembleConfig& config) {
         signal = read_input_table("input " + name, name, *file);
   });
   placing("system", [&] {
-    if (names_file(config.run.system) && config.data.empty())
+    if (!config.model && names_file(config.run.system) && config.data.empty())
       config.data = read_system_file(config.run.system);
   });
 }

@@ -266,10 +266,12 @@ class EnsembleReader {
 }  // namespace
 
 EnsembleConfig parse_ensemble(const std::string& text, const std::string& origin,
-                              const Registry& registry, const std::string& data) {
+                              const Registry& registry, const std::string& data,
+                              std::function<SystemModel(const Parameters&)> model) {
   EnsembleReader reader(origin);
   EnsembleConfig config = reader.file(text);
   config.data = data;
+  config.model = std::move(model);
   if (!reader.mistakes().empty()) throw ConfigError(reader.mistakes());
   ensemble::read_data(config);
   ensemble::Plan(registry, config);

@@ -26,6 +26,15 @@ void add_placed(const EnsembleConfig& config, const std::vector<std::string>& fo
 
 }  // namespace
 
+Simulation simulation(const Registry& registry, const EnsembleConfig& config, const Config& run) {
+  OwnSystem own{config.model};
+  if (!own.make && names_file(run.system))
+    own.make = data_system_maker(registry, run.system, config.data);
+  Simulation out =
+      own.make ? Simulation(registry, run.system, own) : Simulation(registry, run.system);
+  return out.config(run);
+}
+
 Plan::Plan(const Registry& given, EnsembleConfig& from) : registry(given), config(from) {
   std::vector<std::string> mistakes;
   complete(from, mistakes);
@@ -143,13 +152,6 @@ bool Plan::give_inputs(const SystemModel& system) {
       out = base.inputs.try_emplace(input.name, 0.0).second || out;
   }
   return out;
-}
-
-Simulation Plan::simulation(const Config& run) const {
-  if (!names_file(run.system)) return Simulation(registry, run.system).config(run);
-  return Simulation(registry, run.system,
-                    OwnSystem{data_system_maker(registry, run.system, config.data)})
-      .config(run);
 }
 
 bool Plan::builds_each() const {

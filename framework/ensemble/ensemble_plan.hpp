@@ -20,6 +20,9 @@ namespace hamel::ensemble {
 /// Reads the files of the system and of inputs, where their texts are not there yet. ConfigError.
 void read_data(EnsembleConfig& config);
 
+/// Run of the ensemble's system: one of the program, of its text, or a registered one.
+Simulation simulation(const Registry& registry, const EnsembleConfig& config, const Config& run);
+
 /// Plan that all threads share: an ensemble without mistakes.
 class Plan {
  public:
@@ -43,7 +46,9 @@ class Plan {
   /// The reason where a function of the program keeps members out of lanes; else "".
   std::string alone;
 
-  Simulation simulation(const Config& run) const;
+  Simulation simulation(const Config& run) const {
+    return ensemble::simulation(registry, config, run);
+  }
   /// Does each member have a system of its own, or another start at speed?
   bool builds_each() const;
   bool varies_start() const;

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <map>
 #include <stdexcept>
@@ -13,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <hamel/framework/ensemble/kept.hpp>
+#include <hamel/framework/io/formula_words.hpp>
 #include <hamel/framework/run/data/event_formula.hpp>
 #include <hamel/framework/run/record/measures.hpp>
 #include <hamel/framework/run/run/events.hpp>
@@ -67,20 +67,16 @@ class KeptFormulas::Parser {
   static std::string variable(size_t atom) { return fmt::format("kept_atom_{}", atom); }
 
  private:
-  static bool of_name(char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.' || c == '\'';
-  }
-
   // The text with each of the names above as a variable.
   std::string rewrite(const std::string& text) {
     std::string out;
     for (size_t i = 0; i < text.size();) {
-      if (!of_name(text[i])) {
+      if (!may_be_in_name(text[i])) {
         out += text[i++];
         continue;
       }
       size_t end = i;
-      while (end < text.size() && of_name(text[end])) ++end;
+      while (end < text.size() && may_be_in_name(text[end])) ++end;
       const std::string word = text.substr(i, end - i);
       const size_t from = i;
       i = end;
@@ -132,7 +128,7 @@ class KeptFormulas::Parser {
       name = text.substr(i, end - i);
       i = end;
     } else if (name.empty()) {
-      while (i < text.size() && of_name(text[i])) name += text[i++];
+      while (i < text.size() && may_be_in_name(text[i])) name += text[i++];
     }
     return use(atom(from, place, name, text.substr(begin, i - begin)));
   }
@@ -208,7 +204,7 @@ class KeptFormulas::Parser {
     std::vector<std::string> out;
     for (size_t i = 0; i < text.size();) {
       size_t end = i;
-      while (end < text.size() && of_name(text[end])) ++end;
+      while (end < text.size() && may_be_in_name(text[end])) ++end;
       if (end > i) out.push_back(text.substr(i, end - i));
       i = end + 1;
     }

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include <hamel/framework/ensemble/kept.hpp>
-#include <hamel/framework/run/run/energy_balance.hpp>
-#include <hamel/framework/run/run/path_lengths.hpp>
+#include <hamel/framework/run/run/rows/energy_balance.hpp>
+#include <hamel/framework/run/run/rows/path_lengths.hpp>
 #include <hamel/framework/run/run/run.hpp>
 
 namespace hamel::ensemble {

@@ -137,6 +137,10 @@ struct MovingForce {
   std::string name;
   std::vector<std::array<double, 6>> values;  // one for each time: where it acts, the force
   std::vector<double> modes = {};             // none, or as many: 0 open, 1 rolling, 2 sliding
+  // The cone of Coulomb's friction: mu, and the direction of the normal reaction, one for each time
+  // or one for all; without directions there is none.
+  double friction = 0;
+  std::vector<Point> normals = {};
 };
 
 /// Bodies that move, interpolated between the times: two poses that follow each other should differ

@@ -171,6 +171,10 @@ struct Block {
       for (const auto& value : force.values) values.push_back(numbers(value));
       Json& drawn = out["forces"].emplace_back(Json{{"name", force.name}, {"values", values}});
       if (!force.modes.empty()) drawn["modes"] = numbers(force.modes);
+      if (force.normals.empty()) continue;
+      Json normals = Json::array();
+      for (const Point& normal : force.normals) normals.push_back(numbers(normal));
+      drawn["cone"] = {{"friction", number(force.friction)}, {"normals", normals}};
     }
     return out;
   }

@@ -159,6 +159,29 @@ void add_modes(std::vector<Figure>& out, const Result& result) {
   out.push_back({.title = "Modes of the contacts", .drawing = std::move(map), .name = "modes"});
 }
 
+// The cone of a contact that has a normal reaction and slips in two directions.
+void add_cone(MovingForce& force, const DrawnForce& drawn, const Result& result,
+              const std::vector<size_t>& rows) {
+  const std::vector<ContactLaw>& laws = result.system->contact_laws;
+  const auto law = std::ranges::find(laws, drawn.name, &ContactLaw::name);
+  const size_t reactions = result.system->reactions.size();
+  if (law == laws.end() || !law->normal || law->tangential.size() != 2 ||
+      static_cast<size_t>(*law->normal) >= reactions)
+    return;
+  std::vector<double> one(reactions);
+  one[static_cast<size_t>(*law->normal)] = 1;
+  bool constant = true;
+  for (const size_t i : rows) {
+    const Vec<3> f = drawn.value(element(result, i), one).second;
+    if (!(f.norm() > 0)) return force.normals.clear();
+    const Vec<3> n = f / f.norm();
+    force.normals.push_back({n[0], n[1], n[2]});
+    constant = constant && (n - Eigen::Map<const Vec<3>>(force.normals[0].data())).norm() < 1e-9;
+  }
+  if (constant && !force.normals.empty()) force.normals.resize(1);
+  force.friction = law->holding();
+}
+
 std::optional<Animation> animation_of(const Result& result) {
   const Drawing& drawing = result.system->drawing;
   if (drawing.bodies.empty()) return {};
@@ -193,6 +216,7 @@ std::optional<Animation> animation_of(const Result& result) {
       force.values.push_back({x[0], x[1], x[2], f[0], f[1], f[2]});
       if (mode >= 0) force.modes.push_back(result.trajectory.at(i, static_cast<size_t>(mode)));
     }
+    if (mode >= 0) add_cone(force, drawn, result, rows);
     out.forces.push_back(std::move(force));
   }
   return out;

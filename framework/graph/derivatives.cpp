@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <stdexcept>
+#include <utility>
 
 namespace hamel::graph {
 namespace {
@@ -88,6 +89,33 @@ size_t nodes_below(const std::vector<Number>& outputs) {
   int last = -1;
   for (const Number& y : outputs) last = std::max(last, y.node());
   return static_cast<size_t>(last + 1);
+}
+
+// Node, and those whose rates pass into its own; -1: none.
+struct Passage {
+  int node, first, second;
+};
+
+// Nodes between inputs and outputs, in their order.
+std::vector<Passage> passages(const std::vector<Number>& outputs,
+                              const std::vector<bool>& is_input) {
+  const std::vector<Node>& nodes = Recording::current().nodes();
+  std::vector<char> needed(is_input.size(), 0);
+  for (const Number& y : outputs)
+    if (!y.constant()) needed[static_cast<size_t>(y.node())] = 1;
+  std::vector<Passage> out;
+  for (size_t i = needed.size(); i-- > 0;) {
+    if (!needed[i] || is_input[i]) continue;
+    const Node& node = nodes[i];
+    if (node.op == Op::constant || node.op == Op::input || is_condition(node.op)) continue;
+    const bool selects = node.op == Op::select;
+    const Passage step{static_cast<int>(i), selects ? node.b : node.a, selects ? node.c : node.b};
+    for (const int operand : {step.first, step.second})
+      if (operand >= 0) needed[static_cast<size_t>(operand)] = 1;
+    out.push_back(step);
+  }
+  std::ranges::reverse(out);
+  return out;
 }
 
 // Derivatives backwards.
@@ -175,20 +203,26 @@ std::vector<Number> along(const std::vector<Number>& outputs, const std::vector<
     rate[static_cast<size_t>(inputs[k].node())] = rates[k];
     is_input[static_cast<size_t>(inputs[k].node())] = true;
   }
+  std::vector<char> moves(rate.size(), 0);
+  for (size_t i = 0; i < rate.size(); ++i) moves[i] = !rate[i].is(0);
   const auto rate_of = [&](const Number& x) {
     return x.constant() ? Number() : rate[static_cast<size_t>(x.node())];
   };
-  for (size_t i = 0; i < rate.size(); ++i) {
-    if (is_input[i]) continue;
-    const Operation o(static_cast<int>(i));
+  const auto does_move = [&](int node) {
+    return node >= 0 && moves[static_cast<size_t>(node)] != 0;
+  };
+  for (const Passage& step : passages(outputs, is_input)) {
+    if (!does_move(step.first) && !does_move(step.second)) continue;
+    const auto i = static_cast<size_t>(step.node);
+    const Operation o(step.node);
     const Number a = rate_of(o.first), b = rate_of(o.second);
-    if (a.is(0) && b.is(0)) continue;
     if (o.is_selection()) {
       rate[i] = o.chosen(a, b);
-      continue;
+    } else {
+      if (!a.is(0)) rate[i] = o.slope_of_first() * a;
+      if (!b.is(0)) rate[i] += o.slope_of_second() * b;
     }
-    if (!a.is(0)) rate[i] = o.slope_of_first() * a;
-    if (!b.is(0)) rate[i] += o.slope_of_second() * b;
+    moves[i] = !rate[i].is(0);
   }
   std::vector<Number> out;
   for (const Number& y : outputs) out.push_back(rate_of(y));
@@ -210,11 +244,13 @@ std::vector<std::vector<Number>> hessian(const std::vector<Number>& outputs,
                                          const std::vector<Number>& weights,
                                          const std::vector<Number>& inputs) {
   const std::vector<Number> slopes = gradient(outputs, weights, inputs);
-  std::vector<std::vector<Number>> out;
-  for (size_t i = 0; i < inputs.size(); ++i) {
+  std::vector<std::vector<Number>> out(inputs.size(), std::vector<Number>(inputs.size()));
+  for (size_t i = 0; i < inputs.size(); ++i) {  // rows below are symmetric
     std::vector<Number> direction(inputs.size());
     direction[i] = 1;
-    out.push_back(along(slopes, inputs, direction));
+    const std::vector<Number> row = along(
+        {slopes.begin(), slopes.begin() + static_cast<std::ptrdiff_t>(i + 1)}, inputs, direction);
+    for (size_t j = 0; j <= i; ++j) out[i][j] = out[j][i] = row[j];
   }
   return out;
 }

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
-#include <Eigen/Dense>
-#include <unsupported/Eigen/NonLinearOptimization>
+#include <Eigen/Core>
 
 #include <hamel/framework/inverse/bounded_number.hpp>
 #include <hamel/framework/inverse/fit_covariance.hpp>
@@ -18,44 +18,53 @@ namespace {
 
 constexpr double kRoundOff = 1e-9;  // a sigma beside the size of its column
 
-class FitSolver {
+class FitSolver final : public FitDescent {
  public:
   FitSolver(FitProblem& problem, const FitRequest& request,
             const std::function<void(long, double)>& progress, const std::atomic<bool>* stop)
       : problem_(problem), request_(request), progress_(progress), stop_(stop) {
     for (const FitUnknown& one : problem.unknowns()) numbers_.push_back({one.low, one.high});
-    u_.resize(static_cast<Eigen::Index>(numbers_.size()));
-    for (Eigen::Index i = 0; i < u_.size(); ++i) {
-      const auto k = static_cast<size_t>(i);
-      u_[i] = numbers_[k].u(problem.unknowns()[k].guess);
-    }
     begin_sigma();
+    begin(request.segments);
   }
 
-  // The members that Eigen's LevenbergMarquardt requires.
-  int values() const { return static_cast<int>(problem_.data()); }
-  int operator()(const Eigen::VectorXd& u, Eigen::VectorXd& out) {
-    if (stop_ != nullptr && stop_->load()) return -1;
-    if (!problem_.residuals(x_of(u), residuals_)) {
-      out.setConstant(problem_.data(), 1e50);  // refused: the next try is nearer
-      return 0;
-    }
-    out = residuals_;
-    for (Eigen::Index i = 0; i < out.size(); ++i) out[i] = loss(out[i] / sigma_at(i));
-    return 0;
-  }
-  int df(const Eigen::VectorXd& u, Eigen::MatrixXd& out) {
-    if (!problem_.jacobian(x_of(u), TangentMotion::Carries::ten_digits, residuals_, out)) return -1;
-    ++iterations_;
+  bool linearise(FitLinear& out) override {
+    if (!problem_.jacobian(now_, TangentMotion::Carries::ten_digits, out)) return false;
+    residuals_ = out.r;
+    last_ = out;
     weigh(out);
-    double chi2 = 0;
-    for (Eigen::Index i = 0; i < residuals_.size(); ++i)
-      chi2 += std::pow(loss(residuals_[i] / sigma_at(i)), 2);
-    if (progress_) progress_(iterations_, chi2);
-    for (Eigen::Index j = 0; j < out.cols(); ++j)
-      out.col(j) *= numbers_[static_cast<size_t>(j)].slope(u[j]);
-    return 0;
+    if (progress_) progress_(iterations_ + 1, out.r.squaredNorm());
+    for (Eigen::Index j = 0; j < u_.size(); ++j) {
+      const double slope = numbers_[static_cast<size_t>(j)].slope(u_[j]);
+      out.J.col(j) *= slope;
+      if (out.C.rows() > 0) out.C.col(j) *= slope;
+    }
+    return true;
   }
+  bool try_increment(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::VectorXd& c) override {
+    if (stopped()) return false;
+    next_u_ = u_ + x.head(u_.size());
+    next_.x = x_of(next_u_);
+    if (!next_.x.allFinite() || !problem_.move_nodes(now_, x, next_) ||
+        !problem_.residuals(next_, next_residuals_, c))
+      return false;
+    r = next_residuals_;
+    for (Eigen::Index i = 0; i < r.size(); ++i) r[i] = loss(r[i] / sigma_at(i));
+    return r.allFinite();
+  }
+  void accept() override {
+    u_ = next_u_;
+    now_ = next_;
+    residuals_ = next_residuals_;
+  }
+  Eigen::VectorXd numbers() const override { return u_; }
+  double size_of_data() const override {
+    double out = 0;
+    for (const std::size_t column : problem_.column_of())
+      out += std::pow(scale_[column] / sigma_[column], 2);
+    return std::sqrt(out);
+  }
+  bool stopped() const override { return stop_ != nullptr && stop_->load(); }
 
   Fit solve() {
     Fit out;
@@ -86,9 +95,44 @@ class FitSolver {
     const double k = request_.huber.value_or(HUGE_VAL);
     return std::abs(r) <= k ? 1 : k / std::abs(loss(r));
   }
-  void weigh(Eigen::MatrixXd& jacobian) const {
-    for (Eigen::Index i = 0; i < jacobian.rows(); ++i)
-      jacobian.row(i) *= loss_slope(residuals_[i] / sigma_at(i)) / sigma_at(i);
+  // At the guess.
+  void begin(std::optional<int> segments) {
+    u_.resize(static_cast<Eigen::Index>(numbers_.size()));
+    for (Eigen::Index i = 0; i < u_.size(); ++i) {
+      const auto k = static_cast<size_t>(i);
+      u_[i] = numbers_[k].u(problem_.unknowns()[k].guess);
+    }
+    now_.x = x_of(u_);
+    problem_.choose_nodes(sigma_, scale_, segments, now_);
+  }
+  int most_segments() const {
+    std::size_t out = 0;
+    for (const auto& nodes : now_.nodes) out = std::max(out, nodes.size() + 1);
+    return static_cast<int>(out);
+  }
+  // Where displacements grow: from twice as many segments, if it does not converge soon. The growth
+  // is that of the guess, which may be slower than that of the data.
+  End descend_over_segments() {
+    constexpr int soon = 12, row_pairs = 2;
+    std::size_t rows = std::numeric_limits<int>::max();
+    for (const Recording& one : request_.recordings) rows = std::min(rows, one.t.size());
+    while (!request_.segments && !settled_ && most_segments() > 1) {
+      const End end = descend(std::min(soon, request_.iterations));
+      const int twice = 2 * most_segments();
+      if (end == End::converged || end == End::stopped) return end;
+      if (static_cast<std::size_t>(row_pairs * twice) > rows) break;
+      begin(twice);
+    }
+    return descend(request_.iterations);
+  }
+
+  // Residuals in units of the data to those of the loss.
+  void weigh(FitLinear& at) const {
+    for (Eigen::Index i = 0; i < at.r.size(); ++i) {
+      const double r = at.r[i] / sigma_at(i);
+      at.J.row(i) *= loss_slope(r) / sigma_at(i);
+      at.r[i] = loss(r);
+    }
   }
 
   // Where none is given: at first the root of the mean square of the column.
@@ -145,30 +189,25 @@ class FitSolver {
   }
 
   bool minimise(std::string& reason) {
-    Eigen::LevenbergMarquardt<FitSolver> method(*this);
-    constexpr int tries = 10;  // for each iteration
-    method.parameters.maxfev = tries * request_.iterations;
-    method.parameters.ftol = 1e-15;
-    method.parameters.xtol = 1e-13;
-    const int status = static_cast<int>(method.minimize(u_));
-    const Eigen::VectorXd x = x_of(u_);
-    if (!problem_.residuals(x, residuals_)) {
-      reason = "no motion from the guess: " + problem_.failure();
-      return false;
+    const End end = descend_over_segments();
+    settled_ = end == End::converged;
+    switch (end) {
+      case End::converged: return true;
+      case End::stopped: reason = "interrupted"; break;
+      case End::no_derivative:
+        reason = (iterations_ == 0 ? "no motion from the guess: " : "no derivative there: ") +
+                 problem_.failure();
+        break;
+      case End::too_many:
+        reason = fmt::format("not converged in {} iterations", iterations_);
+        break;
+      case End::no_descent: reason = "no step along the derivatives lessens chi2"; break;
     }
-    if (stop_ != nullptr && stop_->load()) reason = "interrupted";
-    else if (status == Eigen::LevenbergMarquardtSpace::UserAsked)
-      reason = "no derivative there: " + problem_.failure();
-    else if (status <= Eigen::LevenbergMarquardtSpace::ImproperInputParameters)
-      reason = "improper problem";
-    else if (status == Eigen::LevenbergMarquardtSpace::TooManyFunctionEvaluation)
-      reason = fmt::format("not converged in {} iterations", iterations_);
-    else return true;
     return false;
   }
 
   void describe(Fit& out) {
-    const Eigen::VectorXd x = x_of(u_);
+    const Eigen::VectorXd& x = now_.x;
     const Eigen::Index q = x.size();
     out.iterations = iterations_;
     out.dof = static_cast<long>(problem_.data() - q);
@@ -186,12 +225,17 @@ class FitSolver {
     out.covariance.values.assign(static_cast<size_t>(q * q),
                                  std::numeric_limits<double>::quiet_NaN());
     if (residuals_.size() == problem_.data()) out.residuals = problem_.tables(residuals_, sigma_);
-    if (Eigen::MatrixXd jacobian;
-        out.converged &&
-        problem_.jacobian(x, TangentMotion::Carries::columns, residuals_, jacobian)) {
-      weigh(jacobian);
-      estimate_covariance(jacobian, x, out);
-    }
+    for (const auto& nodes : now_.nodes) out.segments.push_back(static_cast<int>(nodes.size()) + 1);
+    if (!out.converged) return;
+    // That of the last iteration, whose increment is nothing beside a deviation.
+    last_.r = residuals_;
+    weigh(last_);
+    // Its differences are of the right size where the system has units of its own.
+    if (problem_.has_own_units(now_) && sees_clearly(last_, x))
+      return estimate_covariance(last_, x, out);
+    if (!problem_.jacobian(now_, TangentMotion::Carries::columns, last_)) return;
+    weigh(last_);
+    estimate_covariance(last_, x, out);
   }
 
   FitProblem& problem_;
@@ -199,10 +243,12 @@ class FitSolver {
   const std::function<void(long, double)>& progress_;
   const std::atomic<bool>* stop_;
   std::vector<BoundedNumber> numbers_;
-  Eigen::VectorXd u_, residuals_;
+  Eigen::VectorXd u_, next_u_, residuals_, next_residuals_;
+  FitPoint now_, next_;
+  FitLinear last_;  // at the point of the last iteration, by the numbers themselves
   std::vector<double> sigma_, scale_;
   std::vector<bool> given_;
-  long iterations_ = 0;
+  bool settled_ = false;  // nodes stay
 };
 
 // The run with the fitted numbers, its start in full.

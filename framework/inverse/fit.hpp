@@ -6,10 +6,15 @@
 //   hamel::Fit fit = hamel::fit(hamel::simulate("chaplygin_sleigh"), request);
 //
 //   least  sum_i rho(r_i),  r_i = (q_i(z(t_i)) - d_i) / sigma_i,  rho = r^2/2, or Huber's
-// by the method of Levenberg and Marquardt (Eigen's MINPACK) with the tangent of the run
-// (framework/tangent): single shooting. Covariance (J^T J)^-1. Directions that the data do not see
-// are singular directions of J with its columns scaled to length 1. Sources: More, The
-// Levenberg-Marquardt algorithm (1978); Huber, Robust estimation of a location parameter (1964).
+// by the method of Levenberg and Marquardt with the tangent of the run (framework/tangent). Where a
+// displacement grows along a recording, this is divided into segments, whose first states are
+// unknowns too and whose ends are equations (multiple shooting). The stage solver
+// (framework/stages) is not used for it: its sweep forms normal equations, in which the growth is
+// squared. Covariance (J^T J)^-1 over all changes that keep these equations, which is that of
+// single shooting. Directions that the data do not see are singular directions of J with its
+// columns scaled to length 1. Sources: More, The Levenberg-Marquardt algorithm (1978); Bock, Recent
+// advances in parameter identification techniques for ODE (1983); Huber, Robust estimation of a
+// location parameter (1964).
 // Standard-library types only.
 #pragma once
 
@@ -47,7 +52,8 @@ struct FitRequest {
   std::map<std::string, double> sigma = {};
   std::map<std::string, std::string> observe = {};  // column: formula
   std::optional<double> huber = {};                 // rho is linear beyond so many sigma
-  int iterations = 200;                             // at most
+  std::optional<int> segments = {};  // of each recording; none: by how fast displacements grow
+  int iterations = 200;              // at most
 };
 
 struct FittedNumber {
@@ -69,6 +75,7 @@ struct Fit {
   std::map<std::string, double> sigma;  // of the columns, as given or estimated
   /// Rows of each recording: t, then of each column its datum, the fit and (fit - datum) / sigma.
   std::vector<Table> residuals;
+  std::vector<int> segments;  // of each recording
   long iterations = 0, runs = 0;
   double seconds = 0;
   Config run;  // with the fitted numbers; of the first recording

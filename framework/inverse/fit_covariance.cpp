@@ -6,12 +6,14 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/SVD>
+#include <Eigen/Core>
 
 namespace hamel {
 namespace {
 
 constexpr double kUndetermined = 1e-7;  // singular values, of the largest
+constexpr double kClear = 1e-4;         // so that errors of 1e-10 leave six digits
+constexpr double kUnseen = 1e-9;        // changes of the residuals, of the longest
 
 // The largest change of the residuals by a relative change of one number.
 double longest_change(const Eigen::VectorXd& lengths, const Eigen::VectorXd& x) {
@@ -38,33 +40,53 @@ void name_direction(const Eigen::VectorXd& direction, const Eigen::VectorXd& x, 
     blind[static_cast<size_t>(j)] = true;
   }
 }
+
+// Columns of J, which scale them; that of a number that is nothing but the errors of differences
+// stays as it is. False where there is one, as seen with `unseen`.
+bool find_lengths(const FitLinear& at, const Eigen::VectorXd& x, double unseen,
+                  Eigen::VectorXd& lengths) {
+  lengths = scales_of_columns(at.J);
+  const Eigen::VectorXd norms = at.J.leftCols(x.size()).colwise().norm();
+  const double longest = lengths.maxCoeff();
+  bool all = true;
+  for (Eigen::Index j = 0; j < x.size(); ++j) {
+    const double size = x[j] == 0 ? 1 : std::abs(x[j]);
+    const bool seen = norms[j] * size > unseen * std::max(1e-300, longest_change(norms, x));
+    lengths[j] = seen && norms[j] > 0 ? norms[j] : longest;
+    all = all && seen;
+  }
+  return all;
+}
+
 }  // namespace
 
-// J = U S V^T D with columns scaled to length 1 by D: covariance D^-1 V S^-2 V^T D^-1 of the
-// directions that the data see.
-void estimate_covariance(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& x, Fit& out) {
+bool sees_clearly(const FitLinear& at, const Eigen::VectorXd& x) {
+  Eigen::VectorXd lengths;
+  if (!find_lengths(at, x, kClear, lengths)) return false;
+  const Eigen::VectorXd s = FitStep(at, lengths).singular();
+  return s.size() > 0 && s[s.size() - 1] > kClear * s[0];
+}
+
+// Over increments with C x = 0: J Z = U S V^T with columns scaled by D: covariance W S^-2 W^T, W =
+// D^-1 Z V, of the directions that the data see; rows of the numbers. Without equations Z = 1.
+void estimate_covariance(const FitLinear& at, const Eigen::VectorXd& x, Fit& out) {
   const Eigen::Index q = x.size();
-  Eigen::VectorXd lengths = jacobian.colwise().norm();
-  const double longest = lengths.maxCoeff();
-  Eigen::MatrixXd scaled = jacobian;
   std::vector<bool> blind(static_cast<size_t>(q), false);
-  for (Eigen::Index j = 0; j < q; ++j) {
-    // A column that is nothing but the errors of differences stays as it is.
-    const double size = x[j] == 0 ? 1 : std::abs(x[j]);
-    const bool seen = lengths[j] * size > 1e-9 * std::max(1e-300, longest_change(lengths, x));
-    if (!seen || lengths[j] == 0) lengths[j] = longest > 0 ? longest : 1;
-    scaled.col(j) /= lengths[j];
-  }
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const Eigen::VectorXd& s = svd.singularValues();
+  Eigen::VectorXd lengths;
+  find_lengths(at, x, kUnseen, lengths);
+  const FitStep step(at, lengths);
+  const Eigen::VectorXd& s = step.singular();
+  const Eigen::MatrixXd directions = step.directions();
   Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(q, q);
-  for (Eigen::Index k = 0; k < q; ++k) {
-    const Eigen::VectorXd direction = svd.matrixV().col(k).cwiseQuotient(lengths);
+  for (Eigen::Index k = 0; k < directions.cols(); ++k) {
+    const Eigen::VectorXd direction = directions.col(k).head(q);
     if (s[k] > kUndetermined * s[0]) {
       inverse += direction * direction.transpose() / (s[k] * s[k]);
       continue;
     }
-    name_direction(direction, x, out, blind);
+    // Of length 1 as it is scaled: no change of the numbers, but of what a node is projected from.
+    if (direction.cwiseProduct(lengths.head(q)).norm() > 1e-6)
+      name_direction(direction, x, out, blind);
   }
   for (Eigen::Index i = 0; i < q; ++i) {
     const auto row = static_cast<size_t>(i);

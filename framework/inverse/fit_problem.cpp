@@ -79,6 +79,15 @@ FitProblem::FitProblem(const Simulation& simulation, const FitRequest& request)
     if (!(sigma > 0) || !std::isfinite(sigma))
       mistakes.push_back(fmt::format("sigma: {}: got {}, expected a number above 0", name, sigma));
   }
+  if (request.segments) {
+    size_t rows = request.recordings.front().t.size();  // of the shortest
+    for (const Recording& one : request.recordings) rows = std::min(rows, one.t.size());
+    if (*request.segments < 1 || static_cast<size_t>(*request.segments) > rows)
+      mistakes.push_back(
+          fmt::format("segments: got {}, expected a whole number from 1 to {}, the "
+                      "rows of the data",
+                      *request.segments, rows));
+  }
   if (request.huber && !(*request.huber > 0))
     mistakes.push_back(
         fmt::format("loss: huber: got {}, expected a number above 0", *request.huber));
@@ -191,77 +200,6 @@ Eigen::VectorXd FitProblem::values_of(const Eigen::VectorXd& x, int recording) c
     if (unknowns_[i].recording < 0 || unknowns_[i].recording == recording)
       out[static_cast<Eigen::Index>(unknowns_[i].variable)] = x[static_cast<Eigen::Index>(i)];
   return out;
-}
-
-// row(series, number of the row, motion, of the observed quantities): at each row of each
-// recording.
-template <class Row>
-bool FitProblem::follow(const Eigen::VectorXd& x, TangentMotion::Carries carries, const Row& row) {
-  for (size_t r = 0; r < series_.size(); ++r) {
-    Series& series = series_[r];
-    ++runs_;
-    try {
-      series.observed.clear();
-      TangentMotion motion("fit", *variables_, values_of(x, static_cast<int>(r)), carries);
-      const std::vector<double>& t = series.recording->t;
-      const auto& inputs = motion.motion().plan().setup.inputs;
-      if (inputs != nullptr && !inputs->covers(t.back()))
-        throw ConfigError({fmt::format("input: the table does not cover t = {}", t.back())});
-      for (size_t k = 0; k < t.size(); ++k) {
-        if (const Status status = motion.advance_to(t[k]); !status.ok) {
-          failure_ = fmt::format("t = {:.6g}: {}", status.time, status.reason);
-          return false;
-        }
-        if (!row(r, k, motion)) return false;
-      }
-    } catch (const ConfigError& error) {
-      failure_ = error.mistakes().front();
-      return false;
-    }
-  }
-  return true;
-}
-
-bool FitProblem::residuals(const Eigen::VectorXd& x, Eigen::VectorXd& out) {
-  out.resize(data());
-  Eigen::Index next = 0;
-  Eigen::VectorXd values;
-  return follow(x, TangentMotion::Carries::values, [&](size_t r, size_t k, TangentMotion& motion) {
-    Series& series = series_[r];
-    series.observed(motion.motion(), motion.now().state, values);
-    for (size_t c = 0; c < series.columns.size(); ++c) {
-      const double datum = series.recording->values[series.columns[c]][k];
-      if (std::isfinite(datum)) out[next++] = values[static_cast<Eigen::Index>(c)] - datum;
-    }
-    return values.allFinite();
-  });
-}
-
-bool FitProblem::jacobian(const Eigen::VectorXd& x, TangentMotion::Carries digits,
-                          Eigen::VectorXd& residuals, Eigen::MatrixXd& out) {
-  residuals.resize(data());
-  out.setZero(data(), x.size());
-  Eigen::Index next = 0;
-  Eigen::VectorXd here;
-  Eigen::MatrixXd slopes;
-  return follow(x, digits, [&](size_t r, size_t k, TangentMotion& motion) {
-    Series& series = series_[r];
-    const auto observed = [&](MovedMotion& of, const MotionState& state, Eigen::VectorXd& values) {
-      series.observed(of, state, values);
-    };
-    if (!motion.derivative(motion.now(), observed, here, slopes) || !here.allFinite()) return false;
-    for (size_t c = 0; c < series.columns.size(); ++c) {
-      const double datum = series.recording->values[series.columns[c]][k];
-      if (!std::isfinite(datum)) continue;
-      residuals[next] = here[static_cast<Eigen::Index>(c)] - datum;
-      for (size_t i = 0; i < unknowns_.size(); ++i)
-        if (unknowns_[i].recording < 0 || unknowns_[i].recording == static_cast<int>(r))
-          out(next, static_cast<Eigen::Index>(i)) = slopes(
-              static_cast<Eigen::Index>(c), static_cast<Eigen::Index>(unknowns_[i].variable));
-      ++next;
-    }
-    return true;
-  });
 }
 
 std::vector<Table> FitProblem::tables(const Eigen::VectorXd& residuals,

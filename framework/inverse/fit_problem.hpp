@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include <hamel/framework/inverse/fit.hpp>
+#include <hamel/framework/inverse/fit_descent.hpp>
 #include <hamel/framework/tangent/observed.hpp>
 #include <hamel/framework/tangent/tangent_motion.hpp>
 
@@ -19,6 +20,25 @@ struct FitUnknown {
   std::size_t variable = 0;
   int recording = -1;
   double guess = 0, low = 0, high = 0;
+};
+
+/// Where a segment of a recording begins, and what its start is moved along: (eta; dxi) that keep
+/// the constraints, a column for each.
+struct FitNode {
+  double time = 0;
+  Start start;
+  Eigen::MatrixXd directions;
+};
+/// Numbers, and the nodes of each recording behind its start: multiple shooting.
+struct FitPoint {
+  Eigen::VectorXd x;
+  std::vector<std::vector<FitNode>> nodes;
+  Eigen::Index size() const {
+    Eigen::Index out = x.size();
+    for (const auto& of_one : nodes)
+      for (const FitNode& node : of_one) out += node.directions.cols();
+    return out;
+  }
 };
 
 class FitProblem {
@@ -35,11 +55,17 @@ class FitProblem {
   Eigen::Index data() const { return static_cast<Eigen::Index>(column_of_.size()); }
   const std::vector<std::string>& left_out() const { return left_out_; }
 
-  /// q(z(t)) - datum in units of the data; false where a motion fails or cannot be.
-  bool residuals(const Eigen::VectorXd& x, Eigen::VectorXd& out);
-  /// Both; for the covariance with all digits.
-  bool jacobian(const Eigen::VectorXd& x, TangentMotion::Carries digits, Eigen::VectorXd& residuals,
-                Eigen::MatrixXd& out);
+  /// r = q(z(t)) - datum in units of the data, c: from the end of a segment to the next node, as
+  /// (eta, dy); false where a motion fails or cannot be.
+  bool residuals(const FitPoint& at, Eigen::VectorXd& r, Eigen::VectorXd& c);
+  /// Both, and their derivatives by the numbers and the nodes; for the covariance with all digits.
+  bool jacobian(const FitPoint& at, TangentMotion::Carries digits, FitLinear& out);
+  /// Nodes moved by the tail of an increment, behind the numbers; false where there are none such.
+  bool move_nodes(const FitPoint& from, const Eigen::VectorXd& increment, FitPoint& to);
+  /// Nodes where the tangent has grown, or of so many segments; their states from the data nearby.
+  /// By column: sigmas, and the size of its data.
+  void choose_nodes(const std::vector<double>& sigma, const std::vector<double>& scales,
+                    std::optional<int> segments, FitPoint& out);
   /// Why the last motion failed.
   const std::string& failure() const { return failure_; }
   long runs() const { return runs_; }
@@ -47,6 +73,8 @@ class FitProblem {
   std::vector<Table> tables(const Eigen::VectorXd& residuals,
                             const std::vector<double>& sigma) const;
   Eigen::VectorXd values_of(const Eigen::VectorXd& x, int recording) const;
+  /// Has the system at the point of the first recording units of its own (natural_units.hpp)?
+  bool has_own_units(const FitPoint& at) const;
 
  private:
   struct Series {
@@ -59,8 +87,17 @@ class FitProblem {
   void resolve_columns(std::vector<std::string>& mistakes);
   void check_times(std::vector<std::string>& mistakes) const;
   void make_unknowns(std::vector<std::string>& mistakes);
-  template <class Row>
-  bool follow(const Eigen::VectorXd& x, TangentMotion::Carries carries, const Row& row);
+  std::unique_ptr<TangentMotion> motion_of(const FitPoint& at, std::size_t r, std::size_t segment,
+                                           TangentMotion::Carries carries) const;
+  template <class Row, class Joint>
+  bool follow(const FitPoint& at, TangentMotion::Carries carries, const Row& row,
+              const Joint& joint);
+  template <class Row, class Joint>
+  bool follow_recording(const FitPoint& at, std::size_t r, TangentMotion::Carries carries,
+                        const Row& row, const Joint& joint);
+  class NodeChoice;
+  std::vector<Eigen::Index> columns_of(const FitPoint& at, std::size_t r,
+                                       std::size_t segment) const;
 
   Simulation simulation_;
   const FitRequest& request_;

@@ -8,7 +8,7 @@
 #include <hamel/framework/inverse/plan_builder.hpp>
 #include <hamel/framework/inverse/plan_feedback.hpp>
 #include <hamel/framework/io/errors.hpp>
-#include <hamel/framework/stages/stage_solver.hpp>
+#include <hamel/framework/stages/scaled_stages.hpp>
 
 namespace hamel {
 namespace {
@@ -61,7 +61,8 @@ StageSolution solve(PlanStages& stages, const PlanBuilder& builder, const PlanRe
                     const StageOptions& options, Plan& out) {
   StageSolution solution;
   for (unsigned i = 0; i < kGuesses; ++i) {
-    solution = solve_stages(stages, builder.guess(stages, request.seed + i), options);
+    const PlanBuilder::Guess guess = builder.guess(stages, request.seed + i);
+    solution = solve_scaled(stages, guess.scales, guess.point, options);
     out.iterations += solution.iterations;
     const bool stopped = options.stop != nullptr && options.stop->load();
     if (solution.status != StageStatus::failed || stopped || !request.guess_file.empty()) {

@@ -253,6 +253,9 @@ std::unique_ptr<PlanStages> PlanBuilder::stages() {
   set_bounds(*out);
   set_goals(*out);
   mistakes_.refuse();
+  Eigen::VectorXd way;
+  const MotionState last = goal_state(*out, carried(*out).back(), way);
+  out->set_scales(way, last.xi);
   return out;
 }
 

@@ -7,6 +7,7 @@
 
 #include <hamel/framework/inverse/motion_plan.hpp>
 #include <hamel/framework/inverse/plan_stages.hpp>
+#include <hamel/framework/stages/scaled_stages.hpp>
 
 namespace hamel {
 
@@ -20,7 +21,11 @@ class PlanBuilder {
   std::unique_ptr<PlanStages> stages();
   /// The start to the goal along the group, moved by a seeded smooth perturbation; or the states of
   /// the inputs of a file.
-  StagePoint guess(PlanStages& stages, unsigned seed) const;
+  struct Guess {
+    StagePoint point;
+    StageScales scales;
+  };
+  Guess guess(PlanStages& stages, unsigned seed) const;
   /// Names of the numbers of a state: columns of the element, components of xi.
   const std::vector<std::string>& quantities() const { return quantities_; }
   /// The run that the plan is for: scheme, step.
@@ -42,6 +47,10 @@ class PlanBuilder {
   void mistake(const std::string& key, const std::string& what);
   std::string placed(const std::string& mistake) const;
   StagePoint rolled_out(PlanStages& stages) const;
+  std::vector<MotionState> carried(const PlanStages& stages) const;
+  MotionState goal_state(PlanStages& stages, const MotionState& carried,
+                         Eigen::VectorXd& way) const;
+  Eigen::VectorXd sizes_aside(const PlanStages& stages, const Eigen::VectorXd& way) const;
 
   const Registry& registry_;
   const PlanRequest& request_;

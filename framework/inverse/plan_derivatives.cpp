@@ -7,17 +7,18 @@
 namespace hamel {
 namespace {
 
-// Differences of order 6: truncation delta^6 f7/140, round-off eps/delta. Of increments in rad, m
-// and their rates, of inputs in a part of their size, of the step in a part of it.
+// Differences of order 6: truncation delta^6 f7/140, round-off eps/delta. Of increments and inputs
+// in parts of their sizes, of the step in a part of it.
 constexpr double kDelta = 3e-3, kInputDelta = 1e-2, kStepDelta = 2e-2;
 
 }  // namespace
 
 Eigen::VectorXd PlanStages::deltas(const Eigen::VectorXd& state,
                                    const Eigen::VectorXd& inputs) const {
-  Eigen::VectorXd out = Eigen::VectorXd::Constant(state_increments() + inputs.size(), kDelta);
+  Eigen::VectorXd out(state_increments() + inputs.size());
+  out.head(state_increments()) = kDelta * state_scales;
   if (free_time) out[state_increments() - 1] = kStepDelta * step_of(state);
-  out.tail(inputs.size()) = kInputDelta * (1 + inputs.array().abs());
+  if (inputs.size() > 0) out.tail(inputs.size()) = kInputDelta * (input_scales + inputs.cwiseAbs());
   return out;
 }
 
@@ -67,41 +68,48 @@ bool PlanStages::has_formulas(int k) const {
 
 // q = (eta, w, u, h, t) of the equation by the increments (eta, dy, dh) and u: w = xi + E dy, t =
 // from + k h.
+void PlanStages::by_increments(int k, const Eigen::MatrixXd& basis, const Eigen::MatrixXd& by_q,
+                               Eigen::MatrixXd& out) const {
+  const Eigen::Index n = map.velocities(), m = map.increments() - n, width = state_increments(),
+                     last = by_q.cols() - 1;
+  const auto inputs = static_cast<Eigen::Index>(map.inputs().size());
+  out.resize(by_q.rows(), width + inputs);
+  out.leftCols(n) = by_q.leftCols(n);
+  out.middleCols(n, m) = by_q.middleCols(n, n).lazyProduct(basis);
+  if (free_time) out.col(width - 1) = by_q.col(last - 1) + k * by_q.col(last);
+  for (Eigen::Index i = 0; i < inputs; ++i)
+    out.col(width + i) =
+        by_q.col(2 * n + static_cast<Eigen::Index>(map.inputs()[static_cast<std::size_t>(i)]));
+}
+
 bool PlanStages::step_derivatives(int k, const Eigen::VectorXd& state,
                                   const Eigen::VectorXd& inputs, const Eigen::VectorXd& next,
                                   const Eigen::VectorXd& lambda, StageDerivatives& out) {
   const double h = step_of(state), t = time_of(k, state);
-  const MotionState begin = motion_state(t, state);
+  map.choose_stage(k);
+  set_motion_state(t, state, here_);
   map.set_inputs(inputs);
   unknowns_.resize(static_cast<std::size_t>(steps));
-  if (!equation_->solve(begin, map.plan().setup.inputs->at(t), h,
-                        unknowns_[static_cast<std::size_t>(k)]) ||
-      !equation_->linearise({next.data(), static_cast<std::size_t>(map.coordinate_count())}))
+  if (!equation_->linearise(here_, map.plan().setup.inputs->at(t), h,
+                            unknowns_[static_cast<std::size_t>(k)],
+                            {next.data(), static_cast<std::size_t>(map.coordinate_count())}))
     return false;
-  const Eigen::Index n = map.velocities(), m = map.increments() - n, width = state_increments(),
-                     count = width + inputs.size(), last = equation_->parameters() - 1;
-  by_increments_.setZero(equation_->parameters(), count);
-  by_increments_.topLeftCorner(n, n).setIdentity();
-  by_increments_.block(n, n, n, m) = map.basis(begin);
-  for (std::size_t i = 0; i < map.inputs().size(); ++i)
-    by_increments_(2 * n + static_cast<Eigen::Index>(map.inputs()[i]),
-                   width + static_cast<Eigen::Index>(i)) = 1;
-  if (free_time) {
-    by_increments_(last - 1, width - 1) = 1;
-    by_increments_(last, width - 1) = k;
-  }
-  const Eigen::MatrixXd& inverse = map.left_inverse(motion_state(time_of(k + 1, next), next));
-  slopes_.noalias() = equation_->jacobian() * by_increments_;
+  const Eigen::Index n = map.velocities(), m = map.increments() - n, width = state_increments();
+  set_motion_state(time_of(k + 1, next), next, there_);
+  const Eigen::MatrixXd& inverse = map.left_inverse(there_);
+  const Eigen::MatrixXd& basis = map.basis(here_);
+  by_increments(k, basis, equation_->jacobian(), slopes_);
   out.F.topRows(n) = slopes_.topLeftCorner(n, width);
   out.B.topRows(n) = slopes_.topRightCorner(n, inputs.size());
-  out.F.middleRows(n, m).noalias() = inverse * slopes_.bottomLeftCorner(n, width);
-  out.B.middleRows(n, m).noalias() = inverse * slopes_.bottomRightCorner(n, inputs.size());
+  out.F.middleRows(n, m) = inverse.lazyProduct(slopes_.bottomLeftCorner(n, width));
+  out.B.middleRows(n, m) = inverse.lazyProduct(slopes_.bottomRightCorner(n, inputs.size()));
   if (free_time) out.F(width - 1, width - 1) = 1;
   pulled_.resize(2 * n);
   pulled_.head(n) = lambda.head(n);
-  pulled_.tail(n).noalias() = inverse.transpose() * lambda.segment(n, m);
-  slopes_.noalias() = equation_->hessian(pulled_) * by_increments_;
-  out.hessian.noalias() = by_increments_.transpose() * slopes_;
+  pulled_.tail(n) = inverse.transpose().lazyProduct(lambda.segment(n, m));
+  by_increments(k, basis, equation_->hessian(pulled_), slopes_);
+  half_ = slopes_.transpose();
+  by_increments(k, basis, half_, out.hessian);
   return true;
 }
 

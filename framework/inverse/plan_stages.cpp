@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <hamel/framework/mechanics/natural_units.hpp>
+
 namespace hamel {
 
 double PlanStages::step_of(const Eigen::VectorXd& state) const {
@@ -26,11 +28,75 @@ StageSizes PlanStages::sizes(int k) const {
           .path = path_rows(k)};
 }
 
+void PlanStages::set_scales(const Eigen::VectorXd& way, const Eigen::VectorXd& last_velocity) {
+  const MotionState first = map.start();
+  const Mechanics& mechanics = *map.plan().setup.mechanics;
+  const Eigen::Index n = map.velocities();
+  Eigen::MatrixXd inertia(n, n);
+  mechanics.inertia(first.g.data(), inertia);
+  const std::vector<double> own = own_scales(components_of(system()), mechanics, first.g.data());
+  const double duration = kUnitTime * steps * step;
+  Eigen::VectorXd sizes = Eigen::Map<const Eigen::VectorXd>(own.data(), n);
+  double energy = inertia.diagonal().cwiseProduct(sizes.cwiseAbs2()).maxCoeff();
+  energy /= duration * duration;
+  if (energy == 0) {
+    const auto square = [&](const auto& x) { return x.dot(inertia * x); };
+    energy = std::max(
+        {square(way.head(n)) / (duration * duration), square(first.xi), square(last_velocity)});
+  }
+  if (!(energy > 0)) energy = 1;  // it states none
+  for (Eigen::Index i = 0; i < n; ++i)
+    if (sizes[i] == 0) sizes[i] = duration * std::sqrt(energy / inertia(i, i));
+  state_scales.setConstant(state_increments(), std::sqrt(energy));
+  state_scales.head(n) = sizes;
+  if (free_time) state_scales[state_increments() - 1] = step;
+  if (equation_ != nullptr) equation_->set_units(sizes);
+  find_input_scales(first, std::sqrt(energy) / duration);
+}
+
+// Forces are linear in inputs: by those of inputs that are large enough to show beside the others.
+void PlanStages::find_input_scales(const MotionState& at, double acceleration) {
+  const auto count = static_cast<Eigen::Index>(map.inputs().size());
+  const Mechanics& mechanics = *map.plan().setup.mechanics;
+  const Eigen::MatrixXd& basis = map.basis(at);
+  Eigen::VectorXd u = Eigen::VectorXd::Zero(count), still(map.velocities()), pushed = still;
+  map.set_inputs(u);
+  mechanics.applied_force(at.time, at.g.data(), at.xi, still);
+  input_scales.setOnes(count);
+  constexpr double kMore = 1e6;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    u[i] = 1;
+    for (int n = 0; n < 4; ++n, u[i] *= kMore) {
+      map.set_inputs(u);
+      mechanics.applied_force(at.time, at.g.data(), at.xi, pushed);
+      pushed -= still;
+      if (pushed.norm() * kMore > still.norm()) break;
+    }
+    const double moved = (basis.transpose() * pushed).norm();
+    if (moved > 0 && std::isfinite(moved)) input_scales[i] = u[i] * acceleration / moved;
+    u[i] = 0;
+  }
+  map.set_inputs(u);
+}
+
+Eigen::VectorXd PlanStages::goal_scales() const {
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(goals());
+  for (std::size_t i = 0; i < goal_rows.size(); ++i) {
+    const int component = goal_rows[i].place - map.coordinate_count();
+    if (component >= 0)
+      out[static_cast<Eigen::Index>(i)] = state_scales[component] / (kUnitTime * steps * step);
+  }
+  return out;
+}
+
 void PlanStages::retract(int k, const Eigen::VectorXd& state, const Eigen::VectorXd& increment,
                          Eigen::VectorXd& out) const {
-  map.retract(motion_state(time_of(k, state), state), increment.head(map.increments()), moved_);
+  map.choose_stage(k);
+  set_motion_state(time_of(k, state), state, here_);
+  map.retract(here_, increment.head(map.increments()), moved_);
   out.resize(state.size());
-  out.head(numbers_of_motion()) = numbers(moved_);
+  map.geometry().coordinates(moved_.g.data(), out.data());
+  out.segment(map.coordinate_count(), map.velocities()) = moved_.xi;
   if (free_time) out[state.size() - 1] = step_of(state) + increment[increment.size() - 1];
 }
 
@@ -42,9 +108,15 @@ Eigen::VectorXd PlanStages::numbers(const MotionState& state) const {
 }
 
 MotionState PlanStages::motion_state(double t, const Eigen::VectorXd& state) const {
+  MotionState out;
+  set_motion_state(t, state, out);
+  return out;
+}
+
+void PlanStages::set_motion_state(double t, const Eigen::VectorXd& state, MotionState& out) const {
   const auto columns = static_cast<std::size_t>(map.coordinate_count());
   const std::span<const double> all(state.data(), static_cast<std::size_t>(numbers_of_motion()));
-  return map.state_of(t, all.first(columns), all.subspan(columns));
+  map.set_state(t, all.first(columns), all.subspan(columns), out);
 }
 
 void PlanStages::bounds(int k, Eigen::VectorXd& low_inputs, Eigen::VectorXd& high_inputs) const {
@@ -102,7 +174,13 @@ bool PlanStages::repeats(const StagePoint& point) {
     if (!take_step(k, begin, h, by_equation) || !map.step(begin, begin.time + h, by_run).ok ||
         !displacement(map.geometry(), by_run, by_equation, off))
       return false;
-    if (!(off.lpNorm<Eigen::Infinity>() <= kSame * (1 + by_run.xi.lpNorm<Eigen::Infinity>())))
+    const Eigen::Index n = map.velocities();
+    const double duration = steps * step;
+    const auto sizes = state_scales.head(n);
+    const double rate = duration * by_run.xi.cwiseQuotient(sizes).lpNorm<Eigen::Infinity>();
+    if (!(off.head(n).cwiseQuotient(sizes).lpNorm<Eigen::Infinity>() <= kSame) ||
+        !(duration * off.tail(n).cwiseQuotient(sizes).lpNorm<Eigen::Infinity>() <=
+          kSame * (1 + rate)))
       return false;
   }
   return true;
@@ -117,10 +195,12 @@ bool PlanStages::all_values(int k, const Eigen::VectorXd& state, const Eigen::Ve
   const double h = step_of(state), t = time_of(k, state);
   if (next != nullptr) {
     if (!(h > 0)) return false;
+    map.choose_stage(k);
     map.set_inputs(inputs);
-    if (!take_step(k, motion_state(t, state), h, next_) || !next_.xi.allFinite()) return false;
-    if (!map.difference(motion_state(time_of(k + 1, *next), *next), next_, difference_))
-      return false;
+    set_motion_state(t, state, there_);
+    if (!take_step(k, there_, h, next_) || !next_.xi.allFinite()) return false;
+    set_motion_state(time_of(k + 1, *next), *next, there_);
+    if (!map.difference(there_, next_, difference_)) return false;
     out.head(map.increments()) = difference_;
     if (free_time) out[width - 1] = h - step_of(*next);
   }

@@ -6,6 +6,12 @@
 // its derivatives are exact. Others are central, of order 6, at distance delta,
 //   f' = (45 (f1 - f-1) - 9 (f2 - f-2) + (f3 - f-3))/(60 delta),
 // and for Hessians, which only steer Newton's method, of order 2 at 3 delta.
+//
+// Sizes (state_scales) make the problem one of numbers near 1 in any units of length, mass and
+// time (stages/scaled_stages.hpp). T: kUnitTime of the duration, s_i of eta_i: 1 for angles, the
+// radius of gyration for lengths (mechanics/natural_units.hpp); dy is a root of an energy, sqrt(e),
+// e = max I_ii (s_i/T)^2. Where a system has no angles, e is that of the ways and velocities which
+// the plan states, e = max(|eta|_I^2/T^2, |xi_0|_I^2, |xi_N|_I^2), and s_i = T sqrt(e/I_ii).
 #pragma once
 
 #include <functional>
@@ -18,6 +24,7 @@
 #include <Eigen/Core>
 
 #include <hamel/framework/inverse/recorded_path.hpp>
+#include <hamel/framework/stages/scaled_stages.hpp>
 #include <hamel/framework/stages/stage_problem.hpp>
 #include <hamel/framework/tangent/recorded_lift.hpp>
 #include <hamel/framework/tangent/step_map.hpp>
@@ -44,7 +51,8 @@ struct PlanGoal {
 class PlanStages final : public StageProblem {
  public:
   explicit PlanStages(StepMap of_run)
-      : map(std::move(of_run)), equation_(RecordedLift::of(map.plan())) {}
+      : map(std::move(of_run)),
+        equation_(RecordedLift::of(map.plan(), RecordedLift::Order::second)) {}
 
   mutable StepMap map;  // retract() uses its work space
   int steps = 0;
@@ -59,6 +67,8 @@ class PlanStages final : public StageProblem {
   std::vector<PlanGoal> goal_rows;
   /// The group's columns are more than its dimension, and all are given: goal by tau^-1.
   std::optional<MotionState> goal_place;
+  Eigen::VectorXd state_scales;  // of increments
+  Eigen::VectorXd input_scales;  // that give the start such a velocity in T
 
   int stages() const override { return steps; }
   StageSizes sizes(int k) const override;
@@ -79,6 +89,10 @@ class PlanStages final : public StageProblem {
   std::string row_name(int row) const;
   double step_of(const Eigen::VectorXd& state) const;
   double time_of(int k, const Eigen::VectorXd& state) const { return from + k * step_of(state); }
+  /// Both, by the way to the goal and the velocity there.
+  void set_scales(const Eigen::VectorXd& way, const Eigen::VectorXd& last_velocity);
+  /// Of velocities, which may be fixed by a row; 0 of coordinates, which increments move.
+  Eigen::VectorXd goal_scales() const;
   /// Are the steps of this point those of the run itself?
   bool repeats(const StagePoint& point);
   /// From now on no step is solved by its recorded equation.
@@ -87,9 +101,11 @@ class PlanStages final : public StageProblem {
   /// The numbers of a motion within a stage's state, and back.
   Eigen::VectorXd numbers(const MotionState& state) const;
   MotionState motion_state(double t, const Eigen::VectorXd& state) const;
+  void set_motion_state(double t, const Eigen::VectorXd& state, MotionState& out) const;
   int state_increments() const { return map.increments() + (free_time ? 1 : 0); }
 
  private:
+  void find_input_scales(const MotionState& at, double acceleration);
   int numbers_of_motion() const { return map.coordinate_count() + map.velocities(); }
   int path_rows(int k) const;
   bool take_step(int k, const MotionState& from, double h, MotionState& to);
@@ -101,6 +117,9 @@ class PlanStages final : public StageProblem {
   bool step_derivatives(int k, const Eigen::VectorXd& state, const Eigen::VectorXd& inputs,
                         const Eigen::VectorXd& next, const Eigen::VectorXd& lambda,
                         StageDerivatives& out);
+  // Derivatives by q of the equation of a step, to those by the increments of a stage.
+  void by_increments(int k, const Eigen::MatrixXd& basis, const Eigen::MatrixXd& by_q,
+                     Eigen::MatrixXd& out) const;
   bool state_derivatives(int k, const Eigen::VectorXd& state, const Eigen::VectorXd& inputs,
                          bool last, const Eigen::VectorXd& y, StageDerivatives& out);
   // Of path and cost, by their recorded formulas; false where they have none.
@@ -124,10 +143,10 @@ class PlanStages final : public StageProblem {
     std::unique_ptr<RecordedPath> formulas;
   };
   Recorded at_stages_, at_last_;
-  mutable MotionState moved_;
-  MotionState next_;
+  mutable MotionState here_, moved_;
+  MotionState next_, there_;
   Eigen::VectorXd all_, beside_, difference_, pulled_;
-  Eigen::MatrixXd by_increments_, slopes_;
+  Eigen::MatrixXd slopes_, half_;
 };
 
 }  // namespace hamel

@@ -12,7 +12,7 @@
 
 #include <hamel/framework/graph/code.hpp>
 #include <hamel/framework/run/data/event_formula.hpp>
-#include <hamel/framework/run/run/plan.hpp>
+#include <hamel/framework/run/run/plan/plan.hpp>
 
 namespace hamel {
 

@@ -36,10 +36,20 @@ bool is_part(const std::string& given, const std::string& name) {
          (name.ends_with(given) && std::string("._ ").find(name[before - 1]) != std::string::npos);
 }
 
+// Edits to a name, or to its last word and one more: left_torque of torqe.
+size_t edits_to(const std::string& given, const std::string& name) {
+  const size_t whole = edit_distance(given, name);
+  const size_t word = name.find_last_of("._ ") + 1;  // 0 where there is one word
+  const size_t last = name.size() - word;
+  if (word == 0 || last < 4) return whole;
+  const size_t edits = edit_distance(given, name.substr(word));
+  return edits <= last / 3 ? std::min(whole, edits + 1) : whole;
+}
+
 // How far a name is from what was given: the shortest that has it as a part is the nearest.
 std::pair<size_t, size_t> remoteness(const std::string& given, const std::string& name) {
   if (is_part(given, name)) return {0, name.size()};
-  return {edit_distance(given, name), 0};
+  return {edits_to(given, name), 0};
 }
 
 }  // namespace

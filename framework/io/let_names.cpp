@@ -6,13 +6,10 @@
 #include <fmt/format.h>
 
 #include <hamel/framework/io/expression.hpp>
+#include <hamel/framework/io/formula_words.hpp>
 
 namespace hamel {
 namespace {
-
-bool of_word(char c) {
-  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.' || c == '\'';
-}
 
 // Calls visit(begin, end, is a name) for the parts of a formula: its words, and what lies between
 // them. A number is no name, nor is what follows its digits (2e3).
@@ -20,8 +17,8 @@ template <class Visit>
 void each_part(const std::string& text, const Visit& visit) {
   for (std::size_t begin = 0; begin < text.size();) {
     std::size_t end = begin;
-    const bool word = of_word(text[begin]);
-    while (end < text.size() && of_word(text[end]) == word) ++end;
+    const bool word = may_be_in_name(text[begin]);
+    while (end < text.size() && may_be_in_name(text[end]) == word) ++end;
     visit(begin, end, word && std::isalpha(static_cast<unsigned char>(text[begin])) != 0);
     begin = end;
   }

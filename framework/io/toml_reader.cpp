@@ -82,6 +82,19 @@ class Scan {
   std::string number_;
 };
 
+// Causes of the commonest mistakes of TOML, behind the view that its parser has of them.
+std::string_view hint(std::string_view mistake) {
+  const auto has = [&](std::string_view words) {
+    return mistake.find(words) != std::string_view::npos;
+  };
+  if (has("could not determine value type"))
+    return "; words and formulas are written in quotes, \"lift\"";
+  if (has("unescaped control characters")) return "; a text ends on its line, with a quote";
+  if (has("expected a comment or whitespace, saw"))
+    return "; a number has no unit, and a point before its decimals";
+  return "";
+}
+
 }  // namespace
 
 TomlReader::TomlReader(const std::string& origin)
@@ -117,7 +130,8 @@ toml::table TomlReader::parse(const std::string& text) const {
   try {
     return toml::parse(text);
   } catch (const toml::parse_error& error) {
-    throw ConfigError({fmt::format("{}: {}", place(error.source().begin), error.description())});
+    throw ConfigError({fmt::format("{}: {}{}", place(error.source().begin), error.description(),
+                                   hint(error.description()))});
   }
 }
 

@@ -19,8 +19,18 @@ class Extrapolation {
 
   /// sample: of the size of all that follow.
   explicit Extrapolation(const Unknown& sample) : value_(sample) { differences_.fill(sample); }
-  int count() const { return count_; }
+  int count() const { return count_ > 0 ? count_ : 0; }
   void clear_history() { count_ = 0; }
+  /// The latest solution is the value, and the next one takes its place.
+  void take_back() {
+    if (count_ <= 0) return;
+    value_ = differences_[0];
+    for (std::size_t j = 1; j < static_cast<std::size_t>(count_); ++j)
+      differences_[j - 1] -= differences_[j];
+    count_ = count_ > 1 ? count_ - 1 : kTakenBack;
+  }
+  /// Is there a value?
+  bool empty() const { return count_ == 0; }
   /// D^0, D^1, ..., of which count() are known.
   const std::array<Unknown, most>& differences() const { return differences_; }
   /// As where these differences were reached.
@@ -33,15 +43,18 @@ class Extrapolation {
       else value_ += differences_[static_cast<std::size_t>(j)];
     }
   }
-  /// The value at the next step; count() > 0.
+  /// The value at the next step, where there is one.
   void operator()(Unknown& out) const { out = value_; }
   void push(const Unknown& latest) {
     if (count_ == most) [[likely]]
       return put(latest, most);
-    put(latest, ++count_);
+    count_ = count() + 1;
+    put(latest, count_);
   }
 
  private:
+  static constexpr int kTakenBack = -1;  // the only solution
+
   // As a whole where the size is known, else number by number: both stay in registers.
   void put(const Unknown& latest, int count) {
     if constexpr (Unknown::SizeAtCompileTime == Eigen::Dynamic) {

@@ -46,6 +46,7 @@ class StepUnknown<Scheme, Step, Newton> {
   using Node = hamel::Node<typename Step::Problem>;
   struct Memory {
     void clear_history() {}
+    void move(Nearby /*to*/) {}
   };
   StepUnknown(const KernelSetup& /*setup*/, const Step& /*step*/, bool /*ordered*/) {}
   static Memory memory() { return {}; }
@@ -68,10 +69,15 @@ class StepUnknown<Scheme, Step, Newton> {
     Extrapolation<Unknown> extrapolation;
     typename Newton::template Memory<Unknown> newton;
     bool trusted = false;  // the last solution was the principal root
+    bool moved = false;    // to a state next to that of the last solve
     explicit Memory(const Unknown& sample) : extrapolation(sample), newton(sample) {}
     void clear_history() {
       extrapolation.clear_history();
-      trusted = newton.valid = false;
+      trusted = moved = newton.valid = false;
+    }
+    void move(Nearby to) {
+      moved = true;
+      if (to == Nearby::step) extrapolation.take_back();
     }
   };
 
@@ -87,15 +93,17 @@ class StepUnknown<Scheme, Step, Newton> {
   /// x of a step that has begun at a node with h.
   [[gnu::always_inline]] void solve(Step& step, const Node& node, double h, Memory& memory,
                                     SolveReport& report) {
-    if (memory.extrapolation.count() == 0) step.guess(x_);
+    if (memory.extrapolation.empty()) step.guess(x_);
     else memory.extrapolation(x_);
     if (setup_.solver == nullptr) Newton::solve(step, x_, setup_.tolerance, memory.newton, report);
     else report = solve_outside(step);
     if (!report.ok()) [[unlikely]] {
-      if (!is_round_off(step, h, memory, report)) return;
+      if (!is_round_off(step, h, memory, report)) return solve_anew(step, node, h, memory, report);
     }
     if (!(memory.trusted && setup_.solver == nullptr && report.iterations <= kSure)) [[unlikely]] {
-      if (!is_principal(step, node, h, memory)) report.reason = Reason::not_principal;
+      if (is_principal(step, node, h, memory)) return;
+      report.reason = Reason::not_principal;
+      solve_anew(step, node, h, memory, report);
     }
   }
 
@@ -137,10 +145,29 @@ class StepUnknown<Scheme, Step, Newton> {
     report.residual = guess_.norm() / scale;
     return true;
   }
+  // Without the memory of another state.
+  [[gnu::noinline, gnu::cold]] void solve_anew(Step& step, const Node& node, double h,
+                                               Memory& memory, SolveReport& report) {
+    if (!memory.moved) return;
+    const SolveReport before = report;
+    memory.clear_history();
+    step.guess(x_);
+    if (setup_.solver == nullptr) {
+      const ErasedStep<Step> equation(step);
+      report = Newton::solve(static_cast<const StepEquation<Unknown>&>(equation), x_,
+                             setup_.tolerance, memory.newton);
+    } else {
+      report = solve_outside(step);
+    }
+    report.iterations += before.iterations;
+    report.evaluations += before.evaluations;
+    if (!report.ok() && !is_round_off(step, h, memory, report)) return;
+    if (!is_principal(step, node, h, memory)) report.reason = Reason::not_principal;
+  }
   [[gnu::noinline, gnu::cold]] bool is_principal(Step& step, const Node& node, double h,
                                                  Memory& memory) {
     if (!ordered_) return true;
-    if (memory.trusted && memory.extrapolation.count() > 0) {
+    if (memory.trusted && !memory.extrapolation.empty()) {
       memory.extrapolation(guess_);
       if ((x_ - guess_).squaredNorm() <=
           1e-4 * x_.squaredNorm() + PrincipalRoot<Unknown, Newton>::square_of_round_off(h))

@@ -25,6 +25,10 @@ namespace hamel {
 /// halves, each of which may be halved again, up to ten times.
 enum class OnFailure { stop, retry, halve };
 
+/// A state that a motion goes on at is near: the node, or the beginning of the last step, which is
+/// taken again.
+enum class Nearby { node, step };
+
 /// Everything that a kernel needs of a run; types are erased here and fixed in the kernel.
 struct KernelSetup {
   std::shared_ptr<const Geometry> geometry;    // null: not registered, and the kernel has its own
@@ -91,6 +95,13 @@ class Kernel {
   /// values are no element.
   virtual void restart(double t, std::span<const double> coordinates,
                        std::span<const double> velocity, double step) = 0;
+  /// Continues, with the size of steps that it has, at a state near such a one: solves begin where
+  /// those before have ended. A root that is not within a percent of these, and one that is not
+  /// found from them, is looked for as after restart(). Throws as that does.
+  virtual void restart_near(Nearby /*to*/, double t, std::span<const double> coordinates,
+                            std::span<const double> velocity) {
+    restart(t, coordinates, velocity, next_step());
+  }
   /// A new kernel for the same problem, set up with its constants: setup differs from this one's in
   /// the start and in step alone. Null where there are none worth keeping.
   virtual std::unique_ptr<Kernel> another(const KernelSetup& /*setup*/) const { return nullptr; }

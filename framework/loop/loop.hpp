@@ -70,9 +70,8 @@ class Loop final : public TimeLoop {
     if constexpr (kEstimates) {
       if (!has_dense_output() || !step_.interpolate_freely(part_of_step(t), nodes_.next()))
         return false;
-      typename P::Vector xi(problem_.dim());
-      problem_.velocity(nodes_.next().x, xi);
-      hamel::state(whole_, nodes_.next().g, xi, out,
+      problem_.velocity(nodes_.next().x, xi_);
+      hamel::state(whole_, nodes_.next().g, xi_, out,
                    {.coordinates = false, .momentum = false, .energy = false});
       out.time = t;
       return true;
@@ -114,14 +113,13 @@ class Loop final : public TimeLoop {
   double part_of_step(double t) const { return (t - nodes_.previous().t) / last_h_; }
 
   [[gnu::cold]] void carried(const Node& node, Snapshot& out) const {
-    typename P::Vector xi(problem_.dim());
-    problem_.velocity(node.x, xi);
-    hamel::state(whole_, node.g, xi, out, {});
+    problem_.velocity(node.x, xi_);
+    hamel::state(whole_, node.g, xi_, out, {});
     out.time = node.t;
   }
   // A step that keeps its rows at its end by itself is measured there, others along the step.
   [[gnu::cold]] void state(const Node& node, Snapshot& out, const StateParts& parts) const {
-    typename P::Vector xi(problem_.dim());
+    typename P::Vector& xi = xi_;
     out.step = steps_;
     out.time = &node == &nodes_.now() ? time() : node.t;
     if constexpr (requires { step_.velocity(node, xi); }) step_.velocity(node, xi);
@@ -189,6 +187,10 @@ class Loop final : public TimeLoop {
              0;
   }
 
+  [[gnu::cold]] void move_history(Nearby to) override {
+    for (Memory& memory : memories_) memory.move(to);
+    forget_forces();
+  }
   [[gnu::cold]] void forget_forces() override {
     if constexpr (requires { step_.clear_history(); }) step_.clear_history();
   }
@@ -205,8 +207,8 @@ class Loop final : public TimeLoop {
   [[gnu::cold]] void put(double t, std::span<const double> coordinates,
                          std::span<const double> velocity) override {
     problem_.from_coordinates(coordinates, nodes_.now().g);
-    typename P::Vector xi = as_vector(velocity);
-    problem_.to_state(xi, nodes_.now().x);
+    xi_ = as_vector(velocity);
+    problem_.to_state(xi_, nodes_.now().x);
     nodes_.now().t = t_ = t;
     nodes_.previous() = nodes_.now();
     last_h_ = 0;
@@ -244,6 +246,7 @@ class Loop final : public TimeLoop {
   Whole whole_;
   Step step_;
   P problem_;
+  mutable typename P::Vector xi_ = P::Vector::Zero(problem_.dim());  // work space
   double last_h_ = 0;  // of the last substep; 0 before the first
   NodeRing<P> nodes_;
   State kept_[2];

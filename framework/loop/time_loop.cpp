@@ -85,6 +85,11 @@ void TimeLoop::begin_anew(double t, double step) {
   clear_history();
 }
 
+void TimeLoop::go_on(double t, Nearby to) {
+  count_from(t);
+  move_history(to);
+}
+
 // Steps count from here.
 void TimeLoop::count_from(double t) {
   from_ = time_ = t;

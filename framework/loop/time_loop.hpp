@@ -33,6 +33,11 @@ class TimeLoop : public Kernel {
     put(t, coordinates, velocity);
     begin_anew(t, step);
   }
+  void restart_near(Nearby to, double t, std::span<const double> coordinates,
+                    std::span<const double> velocity) final {
+    put(t, coordinates, velocity);
+    go_on(t, to);
+  }
 
  protected:
   explicit TimeLoop(const KernelSetup& setup);
@@ -48,6 +53,8 @@ class TimeLoop : public Kernel {
   virtual void substep(int place, double h, SolveReport& report) = 0;
   virtual void put_away(Kept where) = 0;
   virtual void fetch(Kept where) = 0;  // sets t_
+  /// Keeps what is remembered of steps for a state next to the last one.
+  virtual void move_history(Nearby to) = 0;
   /// Drops what the step remembers of forces.
   virtual void forget_forces() = 0;
   /// The size of the next step by a reversible control; h_ where there is none.
@@ -82,6 +89,7 @@ class TimeLoop : public Kernel {
   Status lost(const SolveReport& report);
   void reverse();
   void begin_anew(double t, double step);
+  void go_on(double t, Nearby to);
   SolveReport one_step();
   SolveReport composed_step();
   SolveReport chosen_step();

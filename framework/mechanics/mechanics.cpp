@@ -109,7 +109,8 @@ void Mechanics::motion_of_parts(const Geometry& geometry, double t, const double
   if (!constant_inertia() || !constant_constraints()) rates(geometry, t, g, xi, rows, rate);
   force(t, g, xi, change);
   if (!constant_inertia()) change -= rate;
-  mu.noalias() = inertia.lazyProduct(xi);
+  if (inertia.outerStride() == inertia.rows()) multiply(inertia, xi, mu);
+  else mu.noalias() = inertia.lazyProduct(xi);
   geometry.ad_transpose(xi.data(), mu.data(), rate.data());
   change += rate;
 }

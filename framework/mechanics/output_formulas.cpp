@@ -59,6 +59,8 @@ std::string path_column(const Sensor& sensor) {
   return sensor.velocity < 0 ? "" : sensor.name + ".path";
 }
 
+std::string friction_work_column(const ContactLaw& law) { return law.name + ".friction_work"; }
+
 std::vector<std::string> output_mistakes(const SystemModel& system) {
   std::vector<std::string> columns = QuantityNames(system).variables(), out;
   const auto add = [&](const std::vector<std::string>& names) {
@@ -76,7 +78,10 @@ std::vector<std::string> output_mistakes(const SystemModel& system) {
     add(sensor.columns);
     if (sensor.velocity >= 0) columns.push_back(path_column(sensor));
   }
-  for (const ContactLaw& law : system.contact_laws) columns.push_back(law.name + ".mode");
+  for (const ContactLaw& law : system.contact_laws) {
+    columns.push_back(law.name + ".mode");
+    if (!law.tangential.empty()) columns.push_back(friction_work_column(law));
+  }
   const auto wrong = [&](const OutputFormula& output, const std::string& what) {
     out.push_back(fmt::format("{}outputs.{}: {}", output.where, output.name, what));
   };

@@ -35,5 +35,7 @@ std::vector<std::string> output_mistakes(const SystemModel& system);
 
 /// The columns of the path of a sensor: "tip.path"; "" where it has none.
 std::string path_column(const Sensor& sensor);
+/// The column of the work of friction at a contact that has a slip: "base.friction_work".
+std::string friction_work_column(const ContactLaw& law);
 
 }  // namespace hamel

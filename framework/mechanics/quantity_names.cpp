@@ -1,13 +1,13 @@
 #include <hamel/framework/mechanics/quantity_names.hpp>
 
 #include <algorithm>
-#include <cctype>
 #include <set>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include <hamel/framework/io/errors.hpp>
+#include <hamel/framework/io/formula_words.hpp>
 #include <hamel/framework/mechanics/components.hpp>
 #include <hamel/framework/mechanics/quantities.hpp>
 
@@ -212,10 +212,6 @@ class Namer {
   std::set<std::string> all_;
 };
 
-bool of_name(char c) {
-  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.' || c == '\'';
-}
-
 }  // namespace
 
 void name_quantities(SystemModel& model) {
@@ -251,7 +247,7 @@ std::string QuantityNames::in_formula(const std::string& text) const {
   std::string out;
   for (size_t i = 0; i < text.size();) {
     size_t end = i;
-    while (end < text.size() && of_name(text[end])) ++end;
+    while (end < text.size() && may_be_in_name(text[end])) ++end;
     if (end == i) {
       out += text[i++];
       continue;

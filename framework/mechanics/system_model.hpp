@@ -103,6 +103,8 @@ struct SystemModel {
   std::vector<Sensor> sensors;
   std::vector<OutputFormula> outputs;
   bool rows_may_depend = false;  // on each other, at some places: a run watches them
+  /// Counts the copies of a model that is made once for several users; null where each has its own.
+  std::shared_ptr<const void> copies;
 
   /// A start at time t from at most as many numbers as start_parameters has names; from none: the
   /// system's own start at that time. Throws ConfigError where no such motion exists.

@@ -1,5 +1,6 @@
-// nonsmooth: lift, with impulses of contacts at the ends of its steps (run/run/nonsmooth_kernel.hpp
-// has the equations). Where no contact may slide, open or strike it is lift.
+// nonsmooth: lift, with impulses of contacts at the ends of its steps
+// (run/run/contacts/nonsmooth_kernel.hpp has the equations). Where no contact may slide, open or
+// strike it is lift.
 #pragma once
 
 #include <optional>

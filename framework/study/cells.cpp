@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <hamel/framework/run/run/plan.hpp>
+#include <hamel/framework/run/run/plan/plan.hpp>
 #include <hamel/framework/schemes/composition.hpp>
 #include <hamel/framework/study/parts.hpp>
 

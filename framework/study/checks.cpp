@@ -83,7 +83,8 @@ class Checks {
   }
   // "" for a system that cannot be made; the run reports why.
   std::string group_of(const StudySystem& system) const {
-    if (!names_file(system.name) && registry_.system(system.name) == nullptr) return "";
+    if (!system.model && !names_file(system.name) && registry_.system(system.name) == nullptr)
+      return "";
     try {
       return study::model(registry_, system).group.name;
     } catch (const std::invalid_argument&) {

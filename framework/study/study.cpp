@@ -1,6 +1,7 @@
 // A study from its beginning to its end: checked, then run or joined by the engine.
 #include <hamel/framework/study/study.hpp>
 
+#include <hamel/framework/batch/places.hpp>
 #include <hamel/framework/batch/shards.hpp>
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/study/parts.hpp>
@@ -18,6 +19,9 @@ Study::Study(const Registry& registry, StudyConfig config)
 
 // Nothing measured, and all times pending.
 StudyResult Study::begun(Shard part) const {
+  for (const StudySystem& system : config_.systems)
+    if (system.model && !settings_.folder.empty())
+      throw ConfigError({no_journal(settings_.folder, system.name)});
   StudyResult out;
   out.config = config_;
   out.cells = cells_;

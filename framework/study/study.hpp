@@ -10,6 +10,7 @@
 // alike. The measured quantities and their sources: framework/study/README.md.
 #pragma once
 
+#include <functional>
 #include <initializer_list>
 #include <limits>
 #include <map>
@@ -25,6 +26,7 @@
 namespace hamel {
 
 class Registry;
+struct SystemModel;
 
 /// A registered system with its parameters and start, or a file "my_system.toml" (data_system.hpp);
 /// the label is what tables call it.
@@ -34,6 +36,9 @@ struct StudySystem {
   Start start = {};
   InputSignals inputs = {};  // their files are read once, at the study's beginning
   std::string data = {};     // the file's text: a study reads it once, at its beginning
+  /// A system of the program in place of a registered one or a file: maker(mechanism). No journal
+  /// can have it: no folder.
+  std::function<SystemModel(const Parameters&)> model = {};
 };
 
 /// Combinations that are left out: one entry per axis named, any of its values; axes not named

@@ -8,6 +8,7 @@ namespace {
 
 // Null for a name that is neither registered nor a file's.
 OwnSystem::Maker maker(const Registry& registry, const StudySystem& system) {
+  if (system.model) return system.model;
   if (names_file(system.name))
     return system.data.empty() ? data_system_maker(registry, system.name)
                                : data_system_maker(registry, system.name, system.data);
@@ -26,7 +27,7 @@ void read_data(StudyConfig& config) {
       } catch (const ConfigError&) {  // the checks report it
       }
     }
-    if (!names_file(system.name) || !system.data.empty()) continue;
+    if (system.model || !names_file(system.name) || !system.data.empty()) continue;
     try {
       system.data = read_system_file(system.name);
     } catch (const ConfigError&) {  // the checks report it

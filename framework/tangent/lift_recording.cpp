@@ -328,6 +328,7 @@ class LiftRecording {
 bool RecordedLift::record() {
   if (records_++ >= kMostRecords) return false;
   guards_.clear();
+  for (auto* code : {&equation_, &first_, &second_}) code->reset();
   for (Sparse* one : {&equation_by_x_, &by_x_, &by_q_, &end_by_x_, &end_by_q_, &curvature_})
     one->entries.clear();
   try {
@@ -352,7 +353,6 @@ bool RecordedLift::record() {
   work_.resize(work);
   const auto x = static_cast<Eigen::Index>(unknowns_), n = static_cast<Eigen::Index>(n_);
   r_x_.setZero(x, x);
-  r_q_.setZero(x, parameters());
   s_x_.setZero(2 * n, x);
   return true;
 }

@@ -10,6 +10,7 @@
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/mechanics/quantity_names.hpp>
 #include <hamel/framework/run/run/driver.hpp>
+#include <hamel/framework/tangent/step_map.hpp>
 
 namespace hamel {
 namespace {
@@ -123,6 +124,24 @@ Eigen::VectorXd MotionVariables::values() const {
   return out;
 }
 
+MotionVariables MotionVariables::from(double t, const Start& start,
+                                      const Eigen::MatrixXd& directions) const {
+  MotionVariables out = *this;
+  Config config = simulation_.config();
+  config.from = t;
+  config.start = start;
+  config.speed.reset();
+  config.start_values.clear();
+  out.simulation_.config(std::move(config));
+  std::erase_if(out.all_, [](const MotionVariable& one) { return !one.of_system(); });
+  for (Eigen::Index i = 0; i < directions.cols(); ++i)
+    out.all_.push_back(
+        {Kind::direction, fmt::format("direction {}", i + 1), "", "", static_cast<size_t>(i), 0});
+  out.directions_ = directions;
+  out.moves_start_ = directions.cols() > 0;
+  return out;
+}
+
 Simulation MotionVariables::with(const Eigen::VectorXd& values) const {
   Simulation out = simulation_;
   std::map<std::string, std::vector<double>> fields;
@@ -174,6 +193,18 @@ void give_velocity(const RunPlan& plan, const std::vector<std::pair<size_t, doub
   xi += move;
 }
 
+// g tau(eta), xi + dxi.
+void displace_start(const RunPlan& plan, const Eigen::VectorXd& by, Start& start) {
+  const Geometry& geometry = *plan.geometry;
+  MotionState state, moved;
+  state.g.resize(geometry.size());
+  geometry.from_coordinates(start.configuration, state.g.data());
+  state.xi = Eigen::Map<const Eigen::VectorXd>(start.velocity.data(), geometry.dim());
+  displace(geometry, state, by, 1, moved);
+  geometry.coordinates(moved.g.data(), start.configuration.data());
+  start.velocity.assign(moved.xi.begin(), moved.xi.end());
+}
+
 }  // namespace
 
 Start MotionVariables::start_of(Run& run, const Eigen::VectorXd& values) const {
@@ -182,6 +213,11 @@ Start MotionVariables::start_of(Run& run, const Eigen::VectorXd& values) const {
   Start out = usual;
   std::vector<std::pair<size_t, double>> given;
   bool placed = false;
+  if (directions_.cols() > 0) {
+    const Eigen::VectorXd by = directions_ * values.tail(directions_.cols());
+    placed = !by.isZero(0);
+    if (placed) displace_start(run.driver().plan(), by, out);
+  }
   for (size_t i = 0; i < all_.size(); ++i) {
     const double value = values[static_cast<Eigen::Index>(i)];
     if (all_[i].kind == Kind::coordinate) {

@@ -17,10 +17,10 @@
 namespace hamel {
 
 struct MotionVariable {
-  enum class Kind { parameter, input, coordinate, velocity };
+  enum class Kind { parameter, input, coordinate, velocity, direction };
   Kind kind = Kind::parameter;
   std::string name, field, unit;
-  std::size_t index = 0;  // the entry of a parameter, the column of g, the component of xi
+  std::size_t index = 0;  // the entry of a parameter, the column of g, of xi, of the directions
   double value = 0;       // as the simulation has it
   Range range = {};
   bool of_system() const { return kind == Kind::parameter || kind == Kind::input; }
@@ -35,6 +35,9 @@ class MotionVariables {
   const std::vector<MotionVariable>& all() const { return all_; }
   std::size_t size() const { return all_.size(); }
   Eigen::VectorXd values() const;
+  /// Parameters and inputs of a motion that begins at another time and state, and factors of
+  /// displacements (eta; dxi) of this state, which are 0.
+  MotionVariables from(double t, const Start& start, const Eigen::MatrixXd& directions) const;
   /// With these parameters and inputs; the start is not touched.
   Simulation with(const Eigen::VectorXd& values) const;
   /// The admissible start of a run of with(values). ConfigError where the rows leave no choice.
@@ -45,6 +48,7 @@ class MotionVariables {
   std::vector<MotionVariable> all_;
   std::map<std::string, std::vector<double>> entries_;  // of the parameters
   bool moves_start_ = false;
+  Eigen::MatrixXd directions_;
 };
 
 }  // namespace hamel

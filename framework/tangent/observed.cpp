@@ -27,6 +27,10 @@ ObservedQuantities::Value ObservedQuantities::value_of(const SystemModel& system
                                                        const std::string& formula) {
   if (formula == kEnergy.name) return {};
   const QuantityNames names(system);
+  if (const auto found = names.find(formula))  // needs no formula
+    return [place = *found](double, std::span<const double> g, std::span<const double> xi) {
+      return place < g.size() ? g[place] : xi[place - g.size()];
+    };
   const StateVariables variables(system, names.variables());
   return variables.value(Expression(names.in_formula(formula), variables.names(),
                                     constants_in_formulas(system, variables.names())));

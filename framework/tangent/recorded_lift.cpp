@@ -2,18 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
+
+#include <hamel/framework/mechanics/natural_units.hpp>
 
 namespace hamel {
 namespace {
 
 constexpr int kMostCorrections = 12;  // of Newton's method
-constexpr double kSolved = 1e-14;
+// Corrections of velocities over a step, in natural units. Newton's next one is of the square, and
+// multipliers are linear in velocities.
+constexpr double kNearlySolved = 1e-9, kSolved = 1e-13;
 
 }  // namespace
 
-std::unique_ptr<RecordedLift> RecordedLift::of(const RunPlan& plan) {
+std::unique_ptr<RecordedLift> RecordedLift::of(const RunPlan& plan, Order order) {
   const KernelSetup& setup = plan.setup;
   const Mechanics& mechanics = *plan.system->mechanics;
   auto geometry = recorded_geometry(plan.system->group, plan.config.retraction);
@@ -35,6 +38,10 @@ std::unique_ptr<RecordedLift> RecordedLift::of(const RunPlan& plan) {
   out->columns_ = static_cast<std::size_t>(plan.geometry->columns());
   out->projects_ = out->k_ > 0 && !(mechanics.constant_inertia() &&
                                     mechanics.constant_constraints() && !mechanics.has_drift());
+  const std::vector<double> units =
+      natural_units(components_of(*plan.system), mechanics, element.data());
+  out->units_ = Eigen::Map<const Eigen::VectorXd>(units.data(), mechanics.dim());
+  out->curved_ = order == Order::second;
   out->unknowns_ = (out->projects_ ? 3 : 2) * (out->n_ + out->k_);
   std::size_t next = 0;
   const auto place = [&next](std::size_t count) { return std::exchange(next, next + count); };
@@ -63,15 +70,36 @@ bool RecordedLift::evaluate(const graph::Code& code, std::size_t guards_at) {
   return true;
 }
 
-bool RecordedLift::solve(const MotionState& from, const Eigen::VectorXd& inputs, double h,
-                         Unknowns& x) {
+void RecordedLift::set(const MotionState& from, const Eigen::VectorXd& inputs, double h,
+                       const Unknowns& x) {
   g_ = from.g;
   plan_->geometry->coordinates(from.g.data(), input(at_.from));
-  std::copy_n(input(at_.from), columns_, input(at_.reference));
   std::copy_n(from.xi.data(), n_, input(at_.w));
   std::copy_n(inputs.data(), inputs_, input(at_.u));
   *input(at_.h) = h;
   *input(at_.t) = from.time;
+  std::copy_n(x.data(), unknowns_, input(at_.x));
+}
+
+// step_ = R_x^-1 R.
+void RecordedLift::find_correction() {
+  factors_.compute(r_x_, static_cast<Eigen::Index>(n_ + k_));
+  step_ = Eigen::Map<const Eigen::VectorXd>(out_.data(), static_cast<Eigen::Index>(unknowns_));
+  factors_.solve(step_);
+}
+
+bool RecordedLift::is_small(double size) const {
+  const double h = std::abs(in_[at_.h]);
+  const Eigen::Index n = units_.size(), each = static_cast<Eigen::Index>(n_ + k_);
+  double largest = 0;
+  for (Eigen::Index at = 0; at < step_.size(); at += each)
+    largest =
+        std::max(largest, step_.segment(at, n).cwiseQuotient(units_).lpNorm<Eigen::Infinity>());
+  return h * largest <= size;
+}
+
+bool RecordedLift::solve(const MotionState& from, const Eigen::VectorXd& inputs, double h,
+                         Unknowns& x) {
   const auto count = static_cast<Eigen::Index>(unknowns_);
   if (x.size() != count) {
     x.setZero(count);
@@ -79,20 +107,18 @@ bool RecordedLift::solve(const MotionState& from, const Eigen::VectorXd& inputs,
     const auto n = static_cast<Eigen::Index>(n_), k = static_cast<Eigen::Index>(k_);
     for (int i = projects_ ? 0 : 1; i < 3; ++i, at += n + k) x.segment(at, n) = from.xi;
   }
-  Eigen::Map<Eigen::VectorXd> now(input(at_.x), count);
-  now = x;
+  set(from, inputs, h, x);
+  std::copy_n(input(at_.from), columns_, input(at_.reference));
   if (equation_ == nullptr && !record()) return false;
+  Eigen::Map<Eigen::VectorXd> now(input(at_.x), count);
   for (int i = 0; i < kMostCorrections; ++i) {
     if (!evaluate(*equation_, unknowns_) && (!record() || !evaluate(*equation_, unknowns_)))
       return false;
     for (const Sparse::Entry& e : equation_by_x_.entries) r_x_(e.row, e.column) = out_[e.output];
-    factors_.compute(r_x_);
-    step_ = factors_.solve(Eigen::Map<const Eigen::VectorXd>(out_.data(), count));
+    find_correction();
     if (!step_.allFinite()) return false;
     now -= step_;
-    if (step_.lpNorm<Eigen::Infinity>() <= 1e-8 * (1 + now.lpNorm<Eigen::Infinity>()) &&
-        (i > 0 || step_.lpNorm<Eigen::Infinity>() <= kSolved)) {
-      // Newton's next correction is of the square of this one.
+    if (i > 0 && is_small(kNearlySolved)) {
       x = now;
       return true;
     }
@@ -128,41 +154,59 @@ bool RecordedLift::linearise(std::span<const double> reference) {
   return linearise();
 }
 
+bool RecordedLift::linearise(const MotionState& from, const Eigen::VectorXd& inputs, double h,
+                             Unknowns& x, std::span<const double> reference) {
+  if (first_ != nullptr && x.size() == static_cast<Eigen::Index>(unknowns_)) {
+    set(from, inputs, h, x);
+    if (linearise(reference) && is_small(kSolved)) return true;
+  }
+  return solve(from, inputs, h, x) && linearise(reference);
+}
+
+// Transposed: a column of way_, and of slopes_, is a row of X, and of the derivatives of the end.
 bool RecordedLift::linearise() {
   if (!evaluate(*first_, unknowns_) && (!record() || !evaluate(*first_, unknowns_))) return false;
   for (const Sparse::Entry& e : by_x_.entries) r_x_(e.row, e.column) = out_[e.output];
-  for (const Sparse::Entry& e : by_q_.entries) r_q_(e.row, e.column) = out_[e.output];
-  for (const Sparse::Entry& e : end_by_x_.entries) s_x_(e.row, e.column) = out_[e.output];
-  factors_.compute(r_x_);
-  const Eigen::Index x = r_x_.rows(), q = r_q_.cols();
-  way_.resize(x + q, q);  // [X; 1]
-  way_.topRows(x) = -factors_.solve(r_q_);
-  way_.bottomRows(q).setIdentity();
-  jacobian_.noalias() = s_x_ * way_.topRows(x);
-  for (const Sparse::Entry& e : end_by_q_.entries) jacobian_(e.row, e.column) += out_[e.output];
+  find_correction();
+  way_.setZero(parameters(), static_cast<Eigen::Index>(unknowns_));
+  for (const Sparse::Entry& e : by_q_.entries) way_(e.column, e.row) = -out_[e.output];
+  factors_.solve_rows(way_);
+  slopes_.setZero(parameters(), s_x_.rows());
+  for (const Sparse::Entry& e : end_by_x_.entries) {
+    s_x_(e.row, e.column) = out_[e.output];
+    slopes_.col(e.row) += out_[e.output] * way_.col(e.column);
+  }
+  for (const Sparse::Entry& e : end_by_q_.entries) slopes_(e.column, e.row) += out_[e.output];
+  jacobian_ = slopes_.transpose();
   return jacobian_.allFinite();
 }
 
+// Of the lower triangle of L'', half its diagonal: the sum over rows i of [X; 1]_i^T (L'' [X;
+// 1])_i, and its transpose.
 const Eigen::MatrixXd& RecordedLift::hessian(const Eigen::VectorXd& lambda) {
-  if (!curved_) {  // recorded where it is asked for: fits and tangents never do
-    curved_ = true;
-    if (!record() || !linearise()) {
-      hessian_.setConstant(parameters(), parameters(), std::numeric_limits<double>::quiet_NaN());
-      return hessian_;
-    }
-  }
-  step_.noalias() = s_x_.transpose() * lambda;
-  rho_ = factors_.transpose().solve(step_);
-  rho_ = -rho_;
+  rho_.setZero(static_cast<Eigen::Index>(unknowns_));
+  for (const Sparse::Entry& e : end_by_x_.entries)
+    rho_[e.column] -= s_x_(e.row, e.column) * lambda[e.row];
+  factors_.solve_transposed(rho_);
   std::copy_n(lambda.data(), 2 * n_, input(at_.lambda));
   std::copy_n(rho_.data(), unknowns_, input(at_.rho));
   (*second_)(in_.data(), out_.data(), work_.data());
-  half_.setZero(way_.rows(), way_.cols());
-  for (const Sparse::Entry& e : curvature_.entries)
-    half_.row(e.row) += (e.row == e.column ? 0.5 : 1) * out_[e.output] * way_.row(e.column);
-  hessian_.noalias() = way_.transpose() * half_;
-  half_ = hessian_.transpose();
-  hessian_ += half_;
+  const auto unknowns = static_cast<Eigen::Index>(unknowns_);
+  half_.setZero(parameters(), parameters());
+  const std::vector<Sparse::Entry>& entries = curvature_.entries;
+  for (std::size_t i = 0; i < entries.size();) {
+    const Eigen::Index row = entries[i].row;
+    row_.setZero(parameters());
+    for (; i < entries.size() && entries[i].row == row; ++i) {
+      const Sparse::Entry& e = entries[i];
+      const double value = (e.row == e.column ? 0.5 : 1) * out_[e.output];
+      if (e.column < unknowns) row_ += value * way_.col(e.column);
+      else row_[e.column - unknowns] += value;
+    }
+    if (row >= unknowns) half_.col(row - unknowns) += row_;
+    else half_.noalias() += row_ * way_.col(row).transpose();
+  }
+  hessian_ = half_ + half_.transpose();
   return hessian_;
 }
 

@@ -12,18 +12,19 @@
 // w, u, h, t); z+ = S(x; q) = (tau^-1(g_ref^-1 g1), xi_1). With L = lambda . S + rho . R:
 //   dx = X dq,  X = -R_x^-1 R_q,   dz+ = (S_q + S_x X) dq
 //   rho = -R_x^-T S_x^T lambda,    d^2 (lambda . z+) = [X; 1]^T L'' [X; 1]
-// The first pair, the velocity's projection onto the rows at g0, is left out where I and A are
-// constant and b = 0.
+// Each pair is of its own unknowns and those of pairs before it: R_x has no blocks above its
+// diagonal. The first pair, the velocity's projection onto the rows at g0, is left out where I and
+// A are constant and b = 0.
 #pragma once
 
 #include <memory>
 #include <vector>
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 
 #include <hamel/framework/graph/code.hpp>
 #include <hamel/framework/run/data/recorded_formulas.hpp>
+#include <hamel/framework/tangent/block_factors.hpp>
 #include <hamel/framework/tangent/recorded_geometry.hpp>
 #include <hamel/framework/tangent/step_map.hpp>
 
@@ -31,8 +32,13 @@ namespace hamel {
 
 class RecordedLift {
  public:
+  /// Derivatives that are recorded.
+  enum class Order { first, second };
   /// Null where the step of this run is not such an equation.
-  static std::unique_ptr<RecordedLift> of(const RunPlan& plan);
+  static std::unique_ptr<RecordedLift> of(const RunPlan& plan, Order order);
+
+  /// Sizes of displacements, by which solutions are judged; at first natural_units().
+  void set_units(const Eigen::VectorXd& units) { units_ = units; }
 
   /// Unknowns of a step, kept by whoever takes it: the next solution begins at the last one.
   using Unknowns = Eigen::VectorXd;
@@ -46,8 +52,11 @@ class RecordedLift {
   /// Derivatives of the step solved last, as (eta, dxi) at g_ref, by q: 2n x (2n + inputs + 2).
   /// g_ref: coordinates, near the end. False where there are none.
   bool linearise(std::span<const double> reference);
+  /// The same of a step that has been solved before, whose solution is x.
+  bool linearise(const MotionState& from, const Eigen::VectorXd& inputs, double h, Unknowns& x,
+                 std::span<const double> reference);
   const Eigen::MatrixXd& jacobian() const { return jacobian_; }
-  /// Second derivatives of lambda . z+ by q, behind linearise().
+  /// Second derivatives of lambda . z+ by q, behind linearise(), of a lift of second order.
   const Eigen::MatrixXd& hessian(const Eigen::VectorXd& lambda);
   int parameters() const { return static_cast<int>(2 * n_ + inputs_ + 2); }
 
@@ -62,7 +71,10 @@ class RecordedLift {
   friend class LiftRecording;
   RecordedLift() = default;
   bool record();
+  void set(const MotionState& from, const Eigen::VectorXd& inputs, double h, const Unknowns& x);
   bool linearise();
+  void find_correction();
+  bool is_small(double size) const;
   bool evaluate(const graph::Code& code, std::size_t guards_at);
   double* input(std::size_t at) { return in_.data() + at; }
 
@@ -80,9 +92,9 @@ class RecordedLift {
   std::unique_ptr<graph::Code> equation_, first_, second_;
   Sparse equation_by_x_, by_x_, by_q_, end_by_x_, end_by_q_, curvature_;
   std::vector<double> in_, out_, work_;
-  Eigen::PartialPivLU<Eigen::MatrixXd> factors_;
-  Eigen::MatrixXd r_x_, r_q_, s_x_, jacobian_, way_, half_, hessian_;
-  Eigen::VectorXd step_, rho_;
+  BlockFactors factors_;
+  Eigen::MatrixXd r_x_, s_x_, way_, slopes_, jacobian_, half_, hessian_;  // way_: X^T
+  Eigen::VectorXd step_, rho_, row_, units_;
   mutable Eigen::VectorXd z_, g_, part_;
 };
 

@@ -49,12 +49,17 @@ MotionState StepMap::start() const {
 MotionState StepMap::state_of(double t, std::span<const double> coordinates,
                               std::span<const double> velocity) const {
   MotionState out;
+  set_state(t, coordinates, velocity, out);
+  return out;
+}
+
+void StepMap::set_state(double t, std::span<const double> coordinates,
+                        std::span<const double> velocity, MotionState& out) const {
   out.time = t;
   out.g.resize(geometry().size());
   geometry().from_coordinates(coordinates, out.g.data());
   out.xi = Eigen::Map<const Eigen::VectorXd>(velocity.data(),
                                              static_cast<Eigen::Index>(velocity.size()));
-  return out;
 }
 
 std::vector<double> StepMap::coordinates(const MotionState& state) const {
@@ -117,28 +122,35 @@ void StepMap::set(Frame& frame, const MotionState& state) {
     return;
   frame.state = state;
   evaluate_matrices(state.time, state.g.data());
+  // I = L L^T: E = L^-T Q, Q orthonormal with A L^-T Q = 0. Cholesky's factor and the reflections
+  // follow a change of units D of xi: L' = D^-1 L, Q' = Q, E' = D E.
+  const Eigen::LLT<Eigen::MatrixXd> factors(inertia_);
   Eigen::MatrixXd all = Eigen::MatrixXd::Identity(n_, n_);
-  if (k_ > 0) all = Eigen::HouseholderQR<Eigen::MatrixXd>(rows_.transpose()).householderQ();
-  frame.basis = all.rightCols(m_);
-  const Eigen::MatrixXd reduced = frame.basis.transpose() * inertia_;
-  frame.inverse = (reduced * frame.basis).ldlt().solve(reduced);
+  if (k_ > 0) {
+    weighted_ = factors.matrixL().solve(rows_.transpose());
+    all = Eigen::HouseholderQR<Eigen::MatrixXd>(weighted_).householderQ();
+  }
+  frame.basis = factors.matrixU().solve(all.rightCols(m_));
+  frame.inverse = frame.basis.transpose() * inertia_;
 }
 
 const Eigen::MatrixXd& StepMap::basis(const MotionState& state) {
-  set(base_, state);
-  return base_.basis;
+  Frame& base = frames_[stage_].base;
+  set(base, state);
+  return base.basis;
 }
 
 const Eigen::MatrixXd& StepMap::left_inverse(const MotionState& state) {
-  set(target_, state);
-  return target_.inverse;
+  Frame& target = frames_[stage_].target;
+  set(target, state);
+  return target.inverse;
 }
 
 void StepMap::retract(const MotionState& state, const Eigen::VectorXd& increment,
                       MotionState& out) {
-  set(base_, state);
+  const Eigen::MatrixXd& E = basis(state);
   out = state;
-  out.xi += base_.basis * increment.segment(n_, m_);
+  out.xi += E * increment.segment(n_, m_);
   eta_ = increment.head(n_);
   if ((eta_.array() == 0).all()) return;
   geometry().tau(eta_.data(), way_.data());
@@ -148,12 +160,12 @@ void StepMap::retract(const MotionState& state, const Eigen::VectorXd& increment
 }
 
 bool StepMap::difference(const MotionState& from, const MotionState& to, Eigen::VectorXd& out) {
-  set(target_, from);
+  const Eigen::MatrixXd& inverse = left_inverse(from);
   geometry().inverse(from.g.data(), way_.data());
   geometry().compose(way_.data(), to.g.data(), way_.data());
   out.resize(n_ + m_);
   if (!geometry().tau_inverse(way_.data(), out.data())) return false;
-  out.tail(m_) = target_.inverse * (to.xi - from.xi);
+  out.tail(m_) = inverse * (to.xi - from.xi);
   return true;
 }
 

@@ -5,7 +5,8 @@
 // and a run repeats a chain of such steps to round-off. Implicit equations are solved to their
 // round-off. Increments that keep the constraints are left-trivialised: (eta, dy), n + m numbers,
 //   g (+) eta = g tau(eta),   xi (+) dy = projection onto A(g') xi = b of xi + E dy,
-// E an orthonormal basis of ker A at the state itself, the projection orthogonal in the metric I.
+// E a basis of ker A at the state itself, orthonormal in the metric I, the projection orthogonal in
+// it. Where the units of lengths and masses are changed, dy changes as the root of an energy.
 #pragma once
 
 #include <memory>
@@ -13,7 +14,7 @@
 
 #include <Eigen/Core>
 
-#include <hamel/framework/run/run/plan.hpp>
+#include <hamel/framework/run/run/plan/plan.hpp>
 
 namespace hamel {
 
@@ -46,9 +47,16 @@ class StepMap {
   /// The increment from one state to another, to first order in dy; false where there is none.
   bool difference(const MotionState& from, const MotionState& to, Eigen::VectorXd& out);
 
-  /// E at a state, n x m, and its left inverse (E^T I E)^-1 E^T I.
+  /// E at a state, n x m, and its left inverse E^T I.
   const Eigen::MatrixXd& basis(const MotionState& state);
   const Eigen::MatrixXd& left_inverse(const MotionState& state);
+  /// Frames are kept for each stage: that of the last retract() or basis(), and of the last
+  /// difference() or left_inverse().
+  void choose_stage(int k) {
+    if (constant_) return;  // one frame
+    stage_ = static_cast<std::size_t>(k);
+    if (stage_ >= frames_.size()) frames_.resize(stage_ + 1);
+  }
   /// Indices of the inputs that set_inputs() sets.
   const std::vector<std::size_t>& inputs() const { return inputs_; }
 
@@ -57,10 +65,13 @@ class StepMap {
   /// Throws std::invalid_argument where the coordinates are no element.
   MotionState state_of(double t, std::span<const double> coordinates,
                        std::span<const double> velocity) const;
+  /// The same without an allocation where `out` has been a state.
+  void set_state(double t, std::span<const double> coordinates, std::span<const double> velocity,
+                 MotionState& out) const;
   std::vector<double> coordinates(const MotionState& state) const;
 
  private:
-  struct Frame {  // at one state: E, its left inverse (E^T I E)^-1 E^T I
+  struct Frame {  // at one state: E, its left inverse E^T I
     MotionState state;
     Eigen::MatrixXd basis, inverse;
   };
@@ -72,10 +83,14 @@ class StepMap {
   std::vector<std::size_t> inputs_;
   std::unique_ptr<Kernel> kernel_;
   int n_, k_, m_;
-  // Work. The frames where retract() and difference() were last.
+  // Work.
   Config config_there_;  // that starts at a state
   Snapshot node_;
-  Frame base_, target_;
+  struct Frames {
+    Frame base, target;
+  };
+  std::vector<Frames> frames_ = std::vector<Frames>(1);
+  std::size_t stage_ = 0;
   Eigen::MatrixXd inertia_, rows_, weighted_;
   Eigen::VectorXd drift_, eta_, way_;
 };

@@ -42,7 +42,8 @@ TangentMotion::TangentMotion(const std::string& what, const MotionVariables& var
       natural_units(components_of(*plan.system), *plan.setup.mechanics, motion_.start().g.data());
   units_ = Eigen::Map<const Eigen::VectorXd>(units.data(), static_cast<Eigen::Index>(units.size()));
   node_.state = motion_.start();
-  if (carries != Carries::values && has_held_inputs(plan)) equation_ = RecordedLift::of(plan);
+  if (carries != Carries::values && has_held_inputs(plan))
+    equation_ = RecordedLift::of(plan, RecordedLift::Order::first);
   if (carries == Carries::values) {
     begin_with(Eigen::MatrixXd(2 * units_.size(), 0));
     return;

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <hamel/systems/mechanisms/poses.hpp>
+#include <hamel/systems/mechanisms/starts/poses.hpp>
 
 namespace hamel::mechanisms {
 namespace {

@@ -1,3 +1,4 @@
+#include <hamel/framework/io/let_names.hpp>
 #include <hamel/framework/mechanics/system.hpp>
 #include <hamel/framework/mechanics/system_model.hpp>
 #include <hamel/systems/mechanisms/mechanism.hpp>
@@ -6,7 +7,7 @@
 #include <iterator>
 #include <utility>
 
-#include <hamel/systems/mechanisms/assembly.hpp>
+#include <hamel/systems/mechanisms/assembly/assembly.hpp>
 
 namespace hamel {
 namespace {
@@ -83,10 +84,18 @@ void Mechanism::loop(const std::string& name, const std::string& a, const std::s
   loops_.push_back({part(name), options, a, b});
 }
 void Mechanism::coupling(const std::string& name, const CouplingOptions& options) {
+  time(options.formula + " " + options.rates);
   couplings_.push_back({part(name), options});
 }
 void Mechanism::wall(const std::string& name, const WallOptions& options) {
+  time(options.distance);
   walls_.push_back({part(name), options});
+}
+void Mechanism::time(const std::string& formula) {
+  const std::vector<std::string> words = LetNames::words(formula);
+  if (std::ranges::find(words, "t") == words.end()) return;
+  if (std::ranges::any_of(states_, &StateOfRate::is_time)) return;
+  states_.push_back({part("clock"), {.rate = "1", .unit = "s"}, true});
 }
 void Mechanism::prescribe(const std::string& joint, std::function<double(double t)> rate,
                           std::function<double(double t)> angle,
@@ -135,7 +144,8 @@ void Mechanism::torque(const std::string& name, const std::string& body,
 }
 
 void Mechanism::state(const std::string& name, const StateOptions& options) {
-  states_.push_back({part(name), options});
+  states_.push_back({part(name), options, false});
+  time(options.rate);
 }
 
 void Mechanism::sensor(const std::string& name, const std::string& body, Point at) {

@@ -96,6 +96,9 @@ class HAMEL_API Mechanism {
   /// A gear, belt, linkage or differential.
   void coupling(const std::string& name, const CouplingOptions& options);
   void wall(const std::string& name, const WallOptions& options);
+  /// Adds a state `clock`, which is the time, where a formula of a wall, a coupling or a state has
+  /// t: their rows are of the configuration alone. Called by wall(), coupling() and state().
+  void time(const std::string& formula);
   /// The rate of a hinge or slider, as a function of time, or as an input of the run, "steer.rate".
   /// With the angle (of a slider the position) whose derivative it is, a run starts there. With the
   /// derivative of the rate the equations of motion are exact; without, they find it by
@@ -205,7 +208,9 @@ class HAMEL_API Mechanism {
     std::string body;
     bool couple = false;  // a torque
   };
-  struct StateOfRate : Part, StateOptions {};
+  struct StateOfRate : Part, StateOptions {
+    bool is_time = false;
+  };
   struct SensorPart : Part {
     std::string body;
     Point at;

@@ -9,8 +9,9 @@
 #include <hamel/framework/run/data/toml_events.hpp>
 #include <hamel/framework/run/data/toml_outputs.hpp>
 #include <hamel/framework/run/data/toml_parameters.hpp>
+#include <hamel/systems/mechanisms/assembled_models.hpp>
 #include <hamel/systems/mechanisms/contact.hpp>
-#include <hamel/systems/mechanisms/file_parts.hpp>
+#include <hamel/systems/mechanisms/files/file_parts.hpp>
 
 namespace hamel {
 namespace {
@@ -157,7 +158,10 @@ SystemInfo mechanism_info(const std::string& text, const std::string& origin) {
   out.formula = file.word("formula");
   out.known = file.word("known");
   out.source = file.word("source");
-  out.make = [table, origin](const Parameters& given) { return File(table, origin).model(given); };
+  out.make = [table, origin,
+              before = std::make_shared<mechanisms::AssembledModels>()](const Parameters& given) {
+    return before->take(given, [&] { return File(table, origin).model(given); });
+  };
   out.make_with = [table, origin](const Parameters& given, const NameOptions& options) {
     return File(table, origin, options).model(given);
   };

@@ -81,9 +81,9 @@ struct PointOptions {
   std::optional<bool> unilateral = {};
   std::optional<double> static_friction = {}, tangential_restitution = {}, share = {};
 };
-/// A wall that coordinates of hinges and sliders run against.
+/// A wall that coordinates of hinges and sliders run against. It may move: see Mechanism::time.
 struct WallOptions {
-  std::string distance = {};  // a formula of coordinates, not negative
+  std::string distance = {};  // a formula of coordinates and t, not negative
   double restitution = 0;
   Parameters constants = {};  // names that the formula may use
 };
@@ -91,7 +91,7 @@ struct LoopOptions {
   Point at = {0, 0, 0};    // m
   Point axis = {0, 0, 0};  // of a hinge; 0: a ball joint
 };
-/// An equation of joints, one of these three. Coordinates are those of hinges and sliders.
+/// An equation of joints, one of these three. Coordinates are those of hinges and sliders, and t.
 struct CouplingOptions {
   std::string joint = {}, to = {};  // joint = ratio * to + offset
   double ratio = 1, offset = 0;

@@ -31,6 +31,7 @@ struct Link {
   Rigid on_parent = {}, on_child = {};  // P and C
   Inertia inertia = {};                 // of the body, in the drawn pose's axes about its origin
   bool is_state = false;                // a scalar (Mechanism::state), which carries no body
+  bool is_time = false;                 // the state that is t
 };
 
 class Tree {

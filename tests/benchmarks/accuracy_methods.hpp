@@ -14,6 +14,8 @@
 
 #include <hamel/hamel.hpp>
 
+#include "../framework/distances.hpp"
+
 namespace hamel::benchmarks {
 
 using Answer = std::vector<double>;
@@ -38,15 +40,6 @@ struct Scanned {
 };
 using Points = std::vector<std::pair<std::string, std::vector<Scanned>>>;  // of each family
 
-inline double distance(const Answer& a, const Answer& b) {
-  double out = 0;
-  for (size_t i = 0; i < a.size(); ++i) {
-    const double d = std::abs(a[i] - b[i]);
-    if (!(d <= out)) out = std::isnan(d) ? std::numeric_limits<double>::infinity() : d;
-  }
-  return out;
-}
-
 inline double seconds_of(const std::function<bool()>& run, bool& good) {
   const auto begin = Clock::now();
   good = run();
@@ -59,8 +52,8 @@ inline Scanned measure(const Method& method, double setting, const Answer& refer
   method.prepare(setting);
   bool good = true;
   double spent = point.seconds = seconds_of(method.run, good);
-  point.error =
-      good ? distance(method.answer(), reference) : std::numeric_limits<double>::infinity();
+  point.error = good ? test::largest_difference(method.answer(), reference)
+                     : std::numeric_limits<double>::infinity();
   if (!(point.error < 1)) return point;
   for (int i = 1; i < (quick ? 2 : 200) && spent < 0.03; ++i) {
     method.prepare(setting);

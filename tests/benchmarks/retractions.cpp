@@ -19,6 +19,8 @@
 
 #include <hamel/simulate.hpp>
 
+#include "../framework/distances.hpp"
+
 namespace {
 
 constexpr double kUntil = 5;
@@ -33,12 +35,6 @@ double processor_seconds() {
 std::vector<double> end_of(hamel::Run& run) {
   std::vector<double> out = run.state().coordinates;
   out.insert(out.end(), run.state().velocity.begin(), run.state().velocity.end());
-  return out;
-}
-
-double distance(const std::vector<double>& a, const std::vector<double>& b) {
-  double out = 0;
-  for (size_t i = 0; i < a.size(); ++i) out = std::fmax(out, std::abs(a[i] - b[i]));
   return out;
 }
 
@@ -59,7 +55,8 @@ Point measure(const hamel::Simulation& simulation, const std::vector<double>& re
     if (!run.advance_to(kUntil).ok) return {none, none};
     const double seconds = processor_seconds() - before;
     spent += seconds;
-    out = {distance(end_of(run), reference), std::fmin(out.seconds, seconds)};
+    out = {hamel::test::largest_difference(end_of(run), reference),
+           std::fmin(out.seconds, seconds)};
   }
   return out;
 }
@@ -131,7 +128,7 @@ int main(int argc, char** argv) {
         if (!status.ok) throw std::runtime_error(status.reason);
         references[i] = end_of(run);
       }
-      const double resolved = distance(references[0], references[1]);
+      const double resolved = hamel::test::largest_difference(references[0], references[1]);
       if (!(resolved < 1e-9)) {
         std::printf("%-22s left out: the references differ by %.1e\n", name.c_str(), resolved);
         continue;

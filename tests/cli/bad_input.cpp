@@ -217,6 +217,21 @@ TEST_F(BadInput, FilesOfOtherKinds) {
               HasSubstr("the table is empty, expected rows of a time and a value"));
 }
 
+/// The parser names its own state; the cause of the commonest mistakes is added.
+TEST_F(BadInput, MistakesOfToml) {
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"scheme = lift", "could not determine value type; words and formulas are written in quotes"},
+      {"scheme = \"lift", "; a text ends on its line, with a quote"},
+      {"until = 1,5", "saw ','; a number has no unit, and a point before its decimals"},
+      {"until = 1 s", "saw 's'; a number has no unit, and a point before its decimals"}};
+  for (const auto& [line, message] : cases) {
+    std::ofstream(file("a.toml")) << "system = \"suslov\"\n" << line << "\nstep = 0.01\n";
+    const Outcome o = run({"run", "--config", "a.toml"});
+    EXPECT_EQ(o.status, 2);
+    EXPECT_THAT(o.err, testing::AllOf(HasSubstr("a.toml:2:"), HasSubstr(message)));
+  }
+}
+
 TEST_F(BadInput, ReproduceIntoAFile) {
   std::ofstream(file("taken")) << "precious";
   const Outcome o = run({"reproduce", "-o", "taken/figures", "--quiet"});

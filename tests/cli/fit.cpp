@@ -46,6 +46,13 @@ TEST_F(FitCommand, FindsTheSleighAndWritesItsRun) {
   EXPECT_NEAR(again["parameters"]["offset"], 0.2, 1e-9);
 }
 
+TEST_F(FitCommand, TakesSegments) {
+  const json f = answer(fit(recording(), {"--fit", "offset=0.3,start.omega", "--segments", "3"}));
+  EXPECT_EQ(f["status"], "ok");
+  EXPECT_EQ(f["segments"], json({3}));
+  EXPECT_NEAR(f["parameters"]["offset"]["value"], 0.2, 1e-9);
+}
+
 TEST_F(FitCommand, NamesWhatTheDataDoNotSee) {
   std::string velocities;  // the energy would give the scale
   for (const std::string& line : lines(contents(file(recording())))) {
@@ -78,6 +85,8 @@ TEST_F(FitCommand, RefusesMistakes) {
   };
   EXPECT_THAT(wrong(data, {"--fit", "ofset"}), HasSubstr("did you mean 'offset'?"));
   EXPECT_THAT(wrong(data, {"--fit", "offset=1:0"}), HasSubstr("expected NAME, NAME=guess or"));
+  EXPECT_THAT(wrong(data, {"--fit", "offset", "--segments", "0"}),
+              HasSubstr("segments: got 0, expected a whole number from 1 to 81"));
   EXPECT_THAT(wrong(data, {"--fit", "offset", "--loss", "hubert"}),
               HasSubstr("--loss: got 'hubert', expected squares or huber:K"));
   EXPECT_THAT(wrong(write("bad.csv", "t,omega\n0,1\n1,one\n"), {"--fit", "offset"}),

@@ -93,6 +93,7 @@ TEST_F(InputsOfTheProgram, BadOnesAreRefused) {
     return outcome.err;
   };
   EXPECT_THAT(refusal("left_torqe=1"), HasSubstr("did you mean 'left_torque'?"));
+  EXPECT_THAT(refusal("torqe=1"), HasSubstr("_torque'?"));  // near a last word
   EXPECT_THAT(refusal("left_torque"), HasSubstr("--input: 'left_torque' is not name=value"));
   EXPECT_THAT(refusal("left_torque=nan"), HasSubstr("got nan, expected a finite number"));
   EXPECT_THAT(refusal("left_torque=none.csv"), HasSubstr("none.csv"));

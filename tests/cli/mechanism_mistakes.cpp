@@ -36,10 +36,12 @@ TEST_F(MechanismMistakes, InBodiesAndJoints) {
            "axis2 = [0, 0, 1]\n",
        "14:1: joint 'u': 'u1', 'u2' can move so that nothing that has inertia moves"},
   });
-  const Outcome o = run({"run", write("system.toml",
-                                      "[[body]]\nname = \"a\"\nmass = 1\ninertia = [1, 1, 3]\n"
-                                      "[[joint]]\nkind = \"planar\"\nchild = \"a\"\n"
-                                      "[start]\nv1 = 1\n")});
+  const Outcome o = run({"run",
+                         write("system.toml",
+                               "[[body]]\nname = \"a\"\nmass = 1\ninertia = [1, 1, 3]\n"
+                               "[[joint]]\nkind = \"planar\"\nchild = \"a\"\n"
+                               "[start]\nv1 = 1\n"),
+                         "--verbose"});
   EXPECT_EQ(o.status, 0) << o.err;
   EXPECT_THAT(o.out + o.err, HasSubstr("system.toml:1:1: body 'a': no rigid body has the "
                                        "principal moments 1,1,3"));

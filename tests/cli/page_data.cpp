@@ -9,18 +9,17 @@
 
 #include <hamel/framework/figures/curves.hpp>
 #include <hamel/framework/figures/figures.hpp>
+#include <hamel/framework/pages/page.hpp>
 
-#include "pages/page.hpp"
-
-namespace hamel::tools {
+namespace hamel::pages {
 std::string_view report_page() { return "__HAMEL_DATA__"; }
-}  // namespace hamel::tools
+}  // namespace hamel::pages
 
 namespace {
 
 using namespace hamel;
 using namespace hamel::figures;
-using hamel::tools::Page;
+using hamel::pages::Page;
 using Json = nlohmann::json;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();

@@ -100,6 +100,58 @@ TEST_F(Pages, ContactThatIsLost) {
               HasSubstr("at the recorded states the contact pushes"));
 }
 
+// A ball that falls from 1 m, with e = 0.5, loses m g h (1 - e^2) at its first strike, a quarter of
+// that at the next.
+TEST_F(Pages, EventsHaveWhatStrikesTake) {
+  const json page = page_of({"rolling_ball", "--set", "friction=0.2", "--set", "restitution=0.5",
+                             "--slip", "--configuration", "1,0,0,0,1,0,0,0,1,0,0,1.1", "--set",
+                             "radius=0.1", "--set", "mass=2", "--until", "1"});
+  if (page.is_null()) HAMEL_SKIP_WITHOUT("page");
+  const auto table = [&page](const std::string& title) {
+    for (const json& section : page["sections"])
+      for (const json& block : section["blocks"])
+        if (block.value("title", "") == title) return block;
+    return json();
+  };
+  const json events = table("Events"), taken = table("Energy taken at contacts");
+  ASSERT_FALSE(events.is_null());
+  ASSERT_FALSE(taken.is_null());
+  const std::vector<std::string> columns = events["columns"];
+  EXPECT_THAT(columns, testing::ElementsAre("name", "time [s]", "omega1 [rad/s]", "omega2 [rad/s]",
+                                            "omega3 [rad/s]", "x' [m/s]", "y' [m/s]", "z' [m/s]",
+                                            "energy taken [J]"));
+  EXPECT_EQ(events["rows"][0][0], "contact.strikes");
+  EXPECT_EQ(events["rows"][0][7], "-4.429 \u2192 2.215");
+  EXPECT_NEAR(events["rows"][0].back().get<double>(), 2 * 9.81 * 0.75, 1e-6);
+  EXPECT_EQ(taken["rows"][0][1], 2);
+  EXPECT_NEAR(taken["rows"][0][2].get<double>(), 2 * 9.81 * 0.75 * 1.25, 1e-6);
+  EXPECT_EQ(taken["rows"][0][3], 0);  // it does not slip
+}
+
+// A block that slides: its cone stands on the ground, and the reaction lies on it.
+TEST_F(Pages, MotionHasTheConesOfFriction) {
+  const std::string block = write("block.toml", R"toml(
+body = [{ name = "block", mass = 1, at = [0, 0, 0.1], inertia = [0.01, 0.01, 0.01] }]
+joint = [{ name = "root", kind = "free", child = "block", at = [0, 0, 0.1] }]
+point = [{ name = "foot", body = "block", at = [0, 0, 0], friction = 0.3 }]
+[start]
+v1 = 2
+w1 = 0
+w2 = 0
+w3 = 0
+)toml");
+  const json page = page_of({block, "--slip", "--until", "0.05"});
+  if (page.is_null()) HAMEL_SKIP_WITHOUT("page");
+  const json force = figure_of(page, "Motion")["forces"][0];
+  ASSERT_TRUE(force.contains("cone")) << force.dump().substr(0, 300);
+  EXPECT_EQ(force["cone"]["friction"], 0.3);
+  EXPECT_EQ(force["cone"]["normals"], json::parse("[[0, 0, 1]]"));
+  EXPECT_EQ(force["modes"][0], 2);
+  for (const json& value : force["values"])
+    EXPECT_NEAR(std::hypot(value[3].get<double>(), value[4].get<double>()),
+                0.3 * value[5].get<double>(), 1e-4);
+}
+
 // The rows of which the points are the largest are stated.
 TEST_F(Pages, LargestOfSoMany) {
   const json page = page_of({"suslov", "--until", "6"});  // 601 states, 240 points
@@ -218,7 +270,7 @@ TEST_F(Pages, NoEmptyFiguresOfAStudy) {
     return out;
   };
   EXPECT_EQ(titles(look("reference = false\nstep = 0.1\n")),
-            "Verdict; verdict; text; All cells; All cells that were run; Record; record; ");
+            "Verdict; verdict; Notes; text; All cells; All cells that were run; Record; record; ");
   // A page of 100 000 cells would take 400 MB: the table has the first ones.
   std::string list = "0";
   for (int i = 1; i <= 2000; ++i) list += ", " + std::to_string(i * 4e-4);
@@ -278,7 +330,7 @@ TEST_F(Comparisons, RunsAreCalledByWhatDiffers) {
   EXPECT_THAT(names(figure_of(page, "omega")),
               testing::ElementsAre("h = 0.1, offset = 0.2 (1)", "h = 0.05, offset = 0.2",
                                    "h = 0.1, offset = 0.3", "h = 0.1, offset = 0.2 (1 (2))"));
-  EXPECT_EQ(page["sections"][0]["blocks"][4]["rows"][1][1], "2.h5");
+  EXPECT_EQ(page["sections"][0]["blocks"][0]["rows"][1][1], "2.h5");
 }
 
 TEST_F(Comparisons, MethodsOfOneSystem) {

@@ -197,6 +197,33 @@ TEST_F(Record, QuietAndText) {
   EXPECT_TRUE(Json::accept(run({"run", "suslov", "--until", "0.1", "--quiet", "--json"}).out));
 }
 
+/// A note has one line of at most 100 columns; its whole text is printed by --verbose, which the
+/// file of --config may have too, and is in the record.
+TEST_F(Record, NotesAreALineEachAndWholeOnRequest) {
+  const std::string whole = record({"car", "--until", "0.1"})["notes"][0];
+  ASSERT_THAT(whole, HasSubstr("; the reactions there include that of wheel 'right'"));
+  const std::string hint = "--verbose: notes in full";
+  const auto notes_of = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"run", "car", "--until", "0.1"}, out;
+    words.insert(words.end(), more.begin(), more.end());
+    for (const std::string& line : lines(run(words).out))
+      if (line.starts_with("  note ") || line.find(hint) != std::string::npos) out.push_back(line);
+    return out;
+  };
+  const std::vector<std::string> cut = notes_of({});
+  ASSERT_GE(cut.size(), 3u);
+  EXPECT_THAT(cut.front(), AllOf(HasSubstr("row dropped: wheel 'right'"), testing::EndsWith(" …")));
+  EXPECT_THAT(cut.back(), HasSubstr(hint));
+  for (const std::string& line : cut) EXPECT_LE(line.size(), 102u) << line;  // (… has three bytes)
+  const std::string file = write("run.toml", "verbose = true");
+  for (const auto& asked : {notes_of({"--verbose"}), notes_of({"--config", file})}) {
+    EXPECT_EQ(asked.size(), cut.size() - 1);
+    EXPECT_EQ(asked.front(), "  note                   " + whole);
+  }
+  EXPECT_THAT(run({"describe", "car"}).out, HasSubstr(hint));
+  EXPECT_THAT(run({"describe", "car", "--verbose"}).out, HasSubstr("  note         " + whole));
+}
+
 /// Exit status 1: the step leaves the domain of exp. The good steps are written, and the record has
 /// the place and the reason.
 TEST_F(Record, ANumericalFailureKeepsWhatWasComputed) {
@@ -279,7 +306,7 @@ TEST_F(Record, ARunWithoutAStep) {
   EXPECT_THAT(o.out, HasSubstr("estimated error        not determined: the run has failed"));
   EXPECT_THAT(o.out, testing::Not(HasSubstr("ns each")));
   const Outcome lift = run({"run", "falling_disk", "--step", "0.3", "--until", "3", "--check"});
-  EXPECT_THAT(lift.out, HasSubstr("take a smaller step\n"));
+  EXPECT_THAT(lift.out, HasSubstr("take a smaller step: a step turns"));
 }
 
 /// The events of an earlier run are not left beside the rows of another.

@@ -83,7 +83,8 @@ TEST_F(Slipping, MistakesAreNamed) {
 // An effort that jumps is noted, with what to take.
 TEST_F(Slipping, JumpsAreNoted) {
   const auto with = [&](const std::string& effort) {
-    return run({"describe", block("", "[[motor]]\njoint = \"way\"\neffort = \"" + effort + "\"\n")})
+    return run({"describe", block("", "[[motor]]\njoint = \"way\"\neffort = \"" + effort + "\"\n"),
+                "--verbose"})
         .out;
   };
   for (const char* effort : {"-2*sign(way.rate)", "way.rate > 0 ? -1 : 1"})

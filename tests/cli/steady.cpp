@@ -282,6 +282,15 @@ TEST_F(Steady, HamiltonianHopf) {
   EXPECT_THAT(o.out, HasSubstr("stability changes at p = 0.0900000000"));
 }
 
+/// The speed is varied like a parameter where the system defines one, and is offered like one.
+TEST_F(Steady, NamesWhatMayVary) {
+  EXPECT_THAT(run({"steady", "bicycle", "--vary", "spead=1:8:15"}).err,
+              testing::AllOf(HasSubstr("--vary: unknown parameter of bicycle 'spead'"),
+                             HasSubstr("did you mean 'speed'?")));
+  EXPECT_THAT(run({"steady", "suslov", "--vary", "speed=1:8:15"}).err,
+              HasSubstr("unknown parameter of suslov 'speed': expected one of inertia, normal"));
+}
+
 TEST_F(Steady, BranchesNeedAParameter) {
   EXPECT_THAT(run({"steady", "bicycle", "--speed", "5", "--branches"}).err,
               HasSubstr("give --vary"));

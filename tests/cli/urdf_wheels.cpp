@@ -7,6 +7,7 @@ namespace {
 
 using namespace hamel::test;
 using nlohmann::json;
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -105,6 +106,32 @@ TEST_F(UrdfWheels, WheelsThatCannotRoll) {
                              joint("continuous", "axle", "base", "w", "0 0.2 0.1", "0 0 1")),
                        "--wheel", "w:radius=0.1"}),
               HasSubstr("no joint turns about its axle: no hinge about a level axis carries it"));
+}
+
+/// A caster whose swivel has no <axis>, which is along x then, behind drive wheels that are fixed
+/// (pioneer3dx as it is published): what has to be changed is said. With an upright swivel the
+/// caster is taken, as is a wheel on a swinging arm.
+TEST_F(UrdfWheels, AutoLeavesAForkThatTips) {
+  const auto caster = [&](const std::string& axis) {
+    return link("fork", inertial(0.5)) +
+           joint("continuous", "swivel", "base", "fork", "-0.2 0 0.15", axis) +
+           wheel("caster_wheel", "-0.03 0 -0.05", "", kCylinder, "fork");
+  };
+  const std::string base = link("base", inertial(5));
+  const std::string fixed =
+      base + link("left_wheel") + joint("fixed", "l", "base", "left_wheel", "0 0.2 0.1");
+  EXPECT_THAT(mistake({robot(fixed + caster("1 0 0")), "--wheel", "auto"}),
+              AllOf(HasSubstr("'caster_wheel' is left out, since the hinge 'swivel' of its fork is "
+                              "along the way that it rolls"),
+                    HasSubstr("called wheels, but on fixed joints: \"left_wheel\"")));
+  EXPECT_THAT(toml({robot(fixed + caster("0 0 1"), "upright.urdf"), "--wheel", "auto"}),
+              HasSubstr("--wheel auto takes \"caster_wheel\""));
+  EXPECT_THAT(toml({robot(fixed + caster("0 1 0"), "arm.urdf"), "--wheel", "auto"}),
+              HasSubstr("--wheel auto takes \"caster_wheel\""));
+  EXPECT_THAT(
+      toml({robot(base + wheel("left", "0 0.2 0.1") + caster("1 0 0"), "both.urdf"), "--wheel",
+            "auto"}),
+      AllOf(HasSubstr("--wheel auto takes \"left\""), HasSubstr("'caster_wheel' is left out")));
 }
 
 /// A centre beside the axis of the joint by a millimetre, and an axle that leans by hundredths, are

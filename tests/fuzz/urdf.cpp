@@ -4,7 +4,7 @@
 
 #include <hamel/framework/io/toml_reader.hpp>
 #include <hamel/framework/run/names/system_file.hpp>
-#include <hamel/systems/mechanisms/urdf.hpp>
+#include <hamel/systems/mechanisms/urdf/urdf.hpp>
 
 #include "mechanism_run.hpp"
 

@@ -1,6 +1,10 @@
 // Every registered retraction of every registered group obeys the laws
 // (framework/check/retraction_laws.hpp, where the bounds are): by type, Newton's derivative
 // included, and by name as a run sees it.
+#include <sstream>
+#include <string>
+
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <hamel/framework/check/retraction_laws.hpp>
@@ -11,6 +15,7 @@
 namespace {
 
 using namespace hamel;
+using testing::HasSubstr;
 
 template <class R>
 void expect_laws() {
@@ -97,11 +102,66 @@ struct WrongFlag : SecondKind<SO3> {
 struct TooLarge : SecondKind<SO3> {  // its inverse has |xi_2| < pi/2
   static bool in_domain(const Vec<3>& xi) { return xi.norm() < 3; }
 };
+/// tau is wrong by 1e-13: off the group; as one of another xi, with the right inverse and
+/// derivatives, or with an inverse of its own.
+struct OffTheGroup : Exp<SO3> {
+  static Mat<3, 3> tau(const Vec<3>& xi) {
+    Mat<3, 3> g = Exp<SO3>::tau(xi);
+    g(0, 0) += 1e-13 * xi.squaredNorm();
+    return g;
+  }
+};
+struct OfAnother : Exp<SO3> {
+  static Mat<3, 3> tau(const Vec<3>& xi) { return Exp<SO3>::tau(Vec<3>((1 + 1e-13) * xi)); }
+};
+struct OfAnotherWithItsInverse : OfAnother {
+  static Vec<3> tau_inverse(const Mat<3, 3>& g) { return Exp<SO3>::tau_inverse(g) / (1 + 1e-13); }
+};
+struct Turned : Cayley<SE2> {
+  static auto tau(const Vec<3>& xi) {
+    const Vec<3> turn(1e-13 * xi.norm(), 0, 0);
+    return SE2::compose(Cayley<SE2>::tau(xi), Cayley<SE2>::tau(turn));
+  }
+};
+struct Modest : Cayley<SO3> {
+  static constexpr bool symmetric = false;
+};
+std::string failing(const LawReport& report) {
+  std::string out;
+  for (const LawResult& law : report)
+    if (!law.passed()) out += law.law + "; ";
+  return out;
+}
 int failures(const LawReport& report) {
   int out = 0;
   for (const LawResult& law : report) out += law.passed() ? 0 : 1;
   return out;
 }
+TEST(RetractionLaws, NameATauThatIsWrongBy1em13) {
+  EXPECT_THAT(failing(check_retraction<OffTheGroup>()), HasSubstr("tau(xi) is an element; "));
+  EXPECT_THAT(failing(check_retraction<OfAnother>()), HasSubstr("tau^-1(tau(xi)) = xi "));
+  EXPECT_THAT(failing(check_retraction<OfAnotherWithItsInverse>()),
+              HasSubstr("dR tau = Ad(tau) dL tau; "));
+  EXPECT_THAT(failing(check_retraction<Turned>()), HasSubstr("tau^-1(tau(xi)) = xi "));
+}
+
+/// The printed value is the measured one, with what was expected of it.
+TEST(RetractionLaws, PrintWhatIsMeasured) {
+  const auto printed = [](const LawReport& report) {
+    std::ostringstream out;
+    for (const LawResult& law : report) out << law << "\n";
+    return out.str();
+  };
+  EXPECT_THAT(printed({{"a law", 1e-13, 1e-14}}),
+              HasSubstr("FAILS  a law: 1e-13, expected at most 1e-14"));
+  EXPECT_THAT(printed({{"yes", 0, 0}, {"no", 2, 0}}), "holds  yes\nFAILS  no: 2, expected 0\n");
+  EXPECT_THAT(printed(check_retraction<WrongFlag>()),
+              HasSubstr("flag symmetric is right: tau(-xi) = tau(xi)^-1: "));
+  EXPECT_THAT(printed(check_retraction<Modest>()),
+              testing::ContainsRegex("FAILS  flag symmetric .*: not claimed, and violated by "
+                                     "[0-9.e-]+, expected more than 1e-09"));
+}
+
 TEST(RetractionLaws, SeePlantedMistakes) {
   EXPECT_GE(failures(check_retraction<LeftForRight>()), 2);
   EXPECT_EQ(failures(check_retraction<WrongSlope>()), 1);

@@ -210,6 +210,18 @@ TEST(FourLegs, EndWhereTheyMayNotShare) {
   EXPECT_THAT(run.status.reason, HasSubstr("undetermined_reactions: the reactions of leg1, leg2"));
 }
 
+// No leg holds the table for being the first: what is not named is 0.
+TEST(FourLegs, NoneOfThemIsAPivot) {
+  for (const Legs& order : {kInOrder, Legs{3, 1, 0, 2}}) {
+    const Result run =
+        simulate(table(order, "equal_compliance", kEqual)).start("v1", 1).slip().until(0.01).run();
+    ASSERT_TRUE(run.status.ok) << run.status.reason;
+    for (const char* const name : {"w1", "w2", "w3", "v2", "v3"})
+      EXPECT_NEAR(run.trajectory.column(name).front(), 0, 1e-13) << name;
+    EXPECT_NEAR(run.trajectory.column("v1").front(), 1, 1e-13);
+  }
+}
+
 // What is named of a start is kept, and the legs stay on the ground, which slip.
 TEST(FourLegs, ANamedStartStaysOnTheGround) {
   const Result run = simulate(table(kInOrder, "equal_compliance", kEqual))

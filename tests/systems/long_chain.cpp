@@ -121,4 +121,42 @@ TEST(LongChain, AccelerationsOfManyRowsAreThoseWithMultipliers) {
   }
 }
 
+// 200 bodies in space, one hinged to the next: a first step of lift, with the path to its root,
+// calls the equations of motion some 500 times, which is what one Jacobian of differences takes
+// (and not 20 000 times); later steps a few times. A motor that does nothing counts the residuals.
+TEST(LongChain, AStepTakesFewResiduals) {
+  constexpr int bodies = 200;
+  Mechanism m("chain");
+  std::string ahead;
+  std::map<std::string, double> start = {{"v1", 0.3}};
+  for (int i = 0; i < bodies; ++i) {
+    const std::string name = "link " + std::to_string(i), hinge = "h" + std::to_string(i);
+    m.body(name, {.mass = 1, .at = {-0.3 * i, 0, 0.1}, .box = {0.3, 0.1, 0.05}});
+    const Vec<3> axis = i % 2 == 0 ? Vec<3>(0, 1, 0) : Vec<3>(0, 0, 1);
+    if (i == 0) m.free("space", name, {.at = {0, 0, 0.1}});
+    else
+      m.hinge(
+          hinge, ahead, name,
+          {.at = {-0.3 * i + 0.15, 0, 0.1}, .axis = {axis[0], axis[1], axis[2]}, .stiffness = 50});
+    if (i > 0) start[hinge + ".rate"] = 0.1 * std::cos(i);
+    ahead = name;
+  }
+  long residuals = 0;
+  m.motor("h1", [&](const mechanisms::SignalInput&) {
+    ++residuals;
+    return 0.0;
+  });
+  m.start(start);
+  for (const double h : {0.001, 0.01}) {
+    hamel::Run run = simulate(m).scheme("lift").step(h).build();
+    residuals = 0;
+    const Status first = run.step();
+    ASSERT_TRUE(first) << first.reason;
+    EXPECT_LT(residuals, 1000) << h;
+    residuals = 0;
+    ASSERT_TRUE(run.step(3));
+    EXPECT_LT(residuals, 3 * 1000) << h;
+  }
+}
+
 }  // namespace

@@ -12,6 +12,7 @@
 #include <hamel/systems/mechanisms/library.hpp>
 #include <hamel/systems/simulate_typed.hpp>
 
+#include "../framework/distances.hpp"
 #include "mechanism_systems.hpp"
 
 namespace hamel {
@@ -19,6 +20,7 @@ namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using test::largest_difference;
 using testing::HasSubstr;
 
 // The order-6 composition makes the schemes agree to round-off also where the groups are not the
@@ -45,20 +47,13 @@ VectorXd reaction(const Result& result) {
   return a.transpose() * motion.reaction();
 }
 
-double apart(const std::vector<double>& a, const std::vector<double>& b) {
-  double most = a.size() == b.size() ? 0 : 1e300;
-  for (size_t i = 0; i < std::min(a.size(), b.size()); ++i)
-    most = std::max(most, std::abs(a[i] - b[i]));
-  return most;
-}
-
 // Same group and coordinates.
 void same(const std::string& system, const Mechanism& parts, double h = 0.01, double until = 2) {
   SCOPED_TRACE(parts.name());
   const Result hers = run(simulate(system), {}, h, until);
   const Result ours = run(simulate(parts), hers.config.start, h, until);
-  EXPECT_LT(apart(hers.last.coordinates, ours.last.coordinates), 1e-10);
-  EXPECT_LT(apart(hers.last.velocity, ours.last.velocity), 1e-10);
+  EXPECT_LT(largest_difference(hers.last.coordinates, ours.last.coordinates), 1e-10);
+  EXPECT_LT(largest_difference(hers.last.velocity, ours.last.velocity), 1e-10);
   const auto energy = [](const Result& r) {
     const auto column = r.trajectory.column("energy");
     return column.back() - column.front();
@@ -89,8 +84,9 @@ TEST(Mechanisms, AreTheTrain) {
   start.configuration = against_the_last(start.configuration, 3);
   start.velocity = against_the_last(start.velocity, 3);
   const Result ours = run(simulate(by_parts::train({})), start, 0.01, 2);
-  EXPECT_LT(apart(against_the_last(hers.last.coordinates, 3), ours.last.coordinates), 1e-10);
-  EXPECT_LT(apart(against_the_last(hers.last.velocity, 3), ours.last.velocity), 1e-10);
+  EXPECT_LT(largest_difference(against_the_last(hers.last.coordinates, 3), ours.last.coordinates),
+            1e-10);
+  EXPECT_LT(largest_difference(against_the_last(hers.last.velocity, 3), ours.last.velocity), 1e-10);
   EXPECT_NEAR(hers.last.energy, ours.last.energy, 1e-10);
   for (int i = 1; i <= 4; ++i) {  // the forces across the axles
     EXPECT_NEAR(hers.trajectory.column("lambda" + std::to_string(i)).back(),
@@ -121,7 +117,7 @@ TEST(Mechanisms, AreTheDiskThatFalls) {
   EXPECT_NEAR(height, disk.radius * std::sin(theta), 1e-15);
   start.velocity = {omega[0], omega[1], omega[2], v[0], v[1], v[2]};
   const Result ours = run(simulate(by_parts::disk(disk, theta)), start, 0.0025, 1);
-  EXPECT_LT(apart(hers.last.coordinates, turned(ours.last.coordinates, r)), 1e-10);
+  EXPECT_LT(largest_difference(hers.last.coordinates, turned(ours.last.coordinates, r)), 1e-10);
   EXPECT_NEAR(hers.last.energy, ours.last.energy, 1e-10);
   for (int i = 1; i <= 3; ++i) {
     EXPECT_NEAR(hers.trajectory.column("lambda" + std::to_string(i)).back(),
@@ -144,7 +140,7 @@ void same_ball(const std::string& system, const Mechanism& parts) {
   start.velocity = {v[0], v[1], v[2], body[0], body[1], body[2]};
   const Result ours = run(simulate(parts), start, 0.002, 1);
   std::vector<double> place(ours.last.coordinates.begin(), ours.last.coordinates.begin() + 11);
-  EXPECT_LT(apart(hers.last.coordinates, place), 1e-10) << parts.name();
+  EXPECT_LT(largest_difference(hers.last.coordinates, place), 1e-10) << parts.name();
   const auto gain = [](const Result& result) {
     const auto column = result.trajectory.column("energy");
     return column.back() - column.front();
@@ -327,8 +323,8 @@ TEST(Mechanisms, AreDrivenByInputs) {
                             .run();
   const Result signals = simulate(make(false)).until(2).run();
   ASSERT_TRUE(driven.status.ok);
-  EXPECT_LT(apart(driven.last.coordinates, signals.last.coordinates), 1e-12);
-  EXPECT_LT(apart(driven.last.velocity, signals.last.velocity), 1e-12);
+  EXPECT_LT(largest_difference(driven.last.coordinates, signals.last.coordinates), 1e-12);
+  EXPECT_LT(largest_difference(driven.last.velocity, signals.last.velocity), 1e-12);
   EXPECT_NEAR(driven.last.velocity[4], 6, 1e-12);                        // the turret
   EXPECT_NEAR(driven.energy_error_max, signals.energy_error_max, 1e-9);  // with the work of both
   const Result at_rest =

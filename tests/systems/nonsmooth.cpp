@@ -3,8 +3,10 @@
 
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include <hamel/systems/falling_disk.hpp>
+#include <hamel/systems/mechanisms/mechanism.hpp>
 #include <hamel/systems/simulate_typed.hpp>
 
 namespace hamel {
@@ -124,6 +126,38 @@ TEST(Nonsmooth, IsLiftWhereNothingSlides) {
   const Result r = simulate("bicycle").scheme("nonsmooth").step(0.01).until(1).run();
   ASSERT_TRUE(r.status.ok) << r.status.reason;
   EXPECT_EQ(lift.last.coordinates, r.last.coordinates);
+}
+
+// Three legs slide, turn and rest, where places are known to 1e-13 m alone: at each step size.
+TEST(Nonsmooth, RestsFarFromTheOrigin) {
+  Mechanism m("table");
+  m.body("top", {.mass = 2, .at = {0, 0, 0.4}, .inertia = {0.1, 0.12, 0.2}});
+  m.free("root", "top", {.at = {0, 0, 0.4}});
+  int leg = 0;
+  for (const Point& at : {Point{0.3, 0, 0}, Point{-0.2, 0.25, 0}, Point{-0.2, -0.3, 0}})
+    m.point("leg" + std::to_string(++leg), "top", {.at = at, .friction = 0.3});
+  for (const double step : {5e-4, 1e-3, 5e-3}) {
+    const double c = std::cos(0.7), s = std::sin(0.7);
+    const Result r = simulate(m)
+                         .slip()
+                         .scheme("nonsmooth")
+                         .step(step)
+                         .start({.configuration = {c, -s, 0, s, c, 0, 0, 0, 1, 300, -200, 0.4},
+                                 .velocity = {0, 0, 3, 1, 0, 0}})
+                         .until(0.7)
+                         .run();
+    ASSERT_TRUE(r.status.ok) << step << ": " << r.status.reason;
+    for (const double v : r.last.velocity) EXPECT_LT(std::abs(v), 1e-9) << step;
+  }
+}
+
+// Counts of a step are over all its secants.
+TEST(Nonsmooth, ItsLargestCountIsNoneBelowTheMean) {
+  const Result r =
+      simulate("falling_disk").set("friction", 20).scheme("nonsmooth").step(0.01).until(0.5).run();
+  ASSERT_TRUE(r.status.ok) << r.status.reason;
+  EXPECT_GE(r.stats.iterations_max,
+            static_cast<double>(r.stats.iterations) / static_cast<double>(r.steps));
 }
 
 TEST(Nonsmooth, RefusesCompositions) {

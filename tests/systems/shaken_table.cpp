@@ -25,8 +25,7 @@ Mechanism ball(double shake) {
   Mechanism m("ball");
   m.body("ball", {.mass = 0.1, .at = {0, 0, 0}, .sphere = 0.02});
   m.slider("up", kWorld, "ball", {.axis = {0, 0, 1}});
-  m.state("clock", {.rate = "1", .unit = "s"});
-  m.wall("table", {.distance = "up.position - a*sin(w*clock)",
+  m.wall("table", {.distance = "up.position - a*sin(w*t)",
                    .restitution = kRestitution,
                    .constants = {{"a", {a}}, {"w", {kRate}}}});
   m.start(
@@ -69,6 +68,64 @@ TEST(ShakenTable, ThePeriodDoubles) {
   };
   EXPECT_LT(uneven(0.97 * doubles), 1e-4);
   EXPECT_GT(uneven(1.03 * doubles), 1e-2);
+}
+
+// The floor is at 1 + (t - 2) and rises at 1 m/s; a ball falls on it from 2 at t = 2.
+Mechanism over_rising_floor() {
+  Mechanism m("ball");
+  m.body("ball", {.mass = 0.1, .at = {0, 0, 0}, .sphere = 0.02});
+  m.slider("up", kWorld, "ball", {.axis = {0, 0, 1}});
+  m.wall("floor", {.distance = "up.position - 1 - (t - 2)", .restitution = 1});
+  m.start({{"up.position", 2}});
+  return m;
+}
+
+TEST(RisingFloor, IsWhereItIsAtTheTimeOfTheStart) {
+  const Result r =
+      simulate(over_rising_floor()).from(2).until(2.6).tolerance({.relative = 1e-11}).slip().run();
+  EXPECT_TRUE(r.status.ok) << r.status.reason;
+  const double fell = (std::sqrt(1 + 2 * kGravity) - 1) / kGravity, rose = 0.6 - fell;
+  ASSERT_EQ(r.events.size(), 1u);
+  EXPECT_NEAR(r.events[0].time, 2 + fell, 1e-9);
+  EXPECT_NEAR(r.trajectory.column("up.position").back(),
+              1 + fell + (2 + kGravity * fell) * rose - kGravity / 2 * rose * rose, 1e-9);
+  EXPECT_NEAR(r.trajectory.column("clock").back(), 2.6, 1e-12);
+}
+
+TEST(RisingFloor, AClockThatShowsAnotherTimeIsRefused) {
+  try {
+    simulate(over_rising_floor()).from(2).start({.configuration = {2, 0}}).until(3).slip().run();
+    FAIL();
+  } catch (const ConfigError& error) {
+    EXPECT_NE(std::string(error.what()).find("clock is prescribed as 2 at t = 2, but 0"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+// A coupling with t holds a joint as [[prescribed]] does, and a state integrates a function of t.
+TEST(RisingFloor, CouplingsAndStatesMayHaveTheTime) {
+  const auto swing = [](bool by_coupling) {
+    Mechanism m("arm");
+    m.body("arm", {.mass = 1, .at = {0.3, 0, 0}, .inertia = {0.01, 0.02, 0.03}});
+    m.body("bob", {.mass = 0.5, .at = {0.7, 0, 0}, .inertia = {0.001, 0.002, 0.003}});
+    m.hinge("shoulder", kWorld, "arm", {.axis = {0, 1, 0}});
+    m.hinge("elbow", "arm", "bob", {.at = {0.6, 0, 0}, .axis = {0, 1, 0}});
+    if (by_coupling) m.coupling("driven", {.formula = "shoulder.angle - 0.4*sin(3*t)"});
+    else
+      m.prescribe(
+          "shoulder", [](double t) { return 1.2 * std::cos(3 * t); },
+          [](double t) { return 0.4 * std::sin(3 * t); });
+    m.state("sum", {.rate = "t^2"});
+    m.start({{"elbow.angle", 0.5}});
+    return simulate(m).until(2).tolerance({.relative = 1e-11}).run();
+  };
+  const Result coupled = swing(true), prescribed = swing(false);
+  EXPECT_TRUE(coupled.status.ok) << coupled.status.reason;
+  EXPECT_NEAR(coupled.trajectory.column("elbow.angle").back(),
+              prescribed.trajectory.column("elbow.angle").back(), 1e-8);
+  EXPECT_NEAR(coupled.trajectory.column("shoulder.angle").back(), 0.4 * std::sin(6.0), 1e-9);
+  EXPECT_NEAR(coupled.trajectory.column("sum").back(), 8.0 / 3, 1e-9);
 }
 
 }  // namespace

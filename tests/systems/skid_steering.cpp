@@ -39,11 +39,42 @@ TEST(LockedCart, SlidesTurnsAndRests) {
   for (const char* name : {"v1", "v2", "omega"}) EXPECT_LT(std::abs(last(r, name)), 1e-14) << name;
   for (const char* name : {"rear left.mode", "front right.mode"}) EXPECT_EQ(last(r, name), 1);
   EXPECT_LE(r.steps, 60);
+  double taken = 0;  // all that it had
+  for (const char* name : {"rear left", "rear right", "front left", "front right"}) {
+    taken += last(r, std::string(name) + ".friction_work");
+    EXPECT_LT(last(r, std::string(name) + ".friction_work"), -0.1) << name;
+  }
+  EXPECT_NEAR(taken, last(r, "energy") - r.trajectory.column("energy").front(), 1e-7);
   EXPECT_LT(r.energy_error_max, 1e-8);
   // sum N = m g, sum x N = 0.1 m g: 24.525 (1 -+ 1/3).
   EXPECT_THAT(r.system->notes,
               Contains(AllOf(HasSubstr("least sum of squares"), HasSubstr("'rear right' 16.35 N"),
                              HasSubstr("'front left' 32.7 N"))));
+}
+
+// All four slip across, in whatever order they are; each turns as fast as it rolls ahead.
+TEST(SkidSteered, WheelsTurnAtANamedStart) {
+  Mechanism m("cart");
+  m.body("cart", {.mass = 10, .at = {0, 0, 0.2}, .box = {0.8, 0.5, 0.2}});
+  m.planar("floor", "cart");
+  for (const double x : {-0.3, 0.3})
+    for (const double y : {-0.2, 0.2}) {
+      const std::string name =
+          fmt::format("{}{}", x > 0 ? "front " : "rear ", y > 0 ? "left" : "right");
+      m.body(name, {.mass = 1, .at = {x, y, 0.1}, .inertia = {0.003, 0.005, 0.003}});
+      m.hinge(name, "cart", name, {.at = {x, y, 0.1}, .axis = {0, 1, 0}});
+      m.wheel(name, name, {.at = {x, y, 0.1}, .radius = 0.1, .friction = 0.5});
+    }
+  const Result r = slipping(m).start("v1", 1).start("omega", 1).until(1e-3).run();
+  ASSERT_TRUE(r.status.ok) << r.status.reason;
+  const auto first = [&](const std::string& name) { return r.trajectory.column(name).front(); };
+  EXPECT_NEAR(first("v1"), 1, 1e-12);
+  EXPECT_NEAR(first("v2"), 0, 1e-12);
+  EXPECT_NEAR(first("omega"), 1, 1e-12);
+  for (const char* const name : {"front left", "rear left"})
+    EXPECT_NEAR(first(fmt::format("{}.rate", name)), 8, 1e-12) << name;
+  for (const char* const name : {"front right", "rear right"})
+    EXPECT_NEAR(first(fmt::format("{}.rate", name)), 12, 1e-12) << name;
 }
 
 // Pushed at its middle by less than its friction each of four feet bears a quarter, whatever an

@@ -150,5 +150,37 @@ TEST(Walls, TwoBlocksOnARail) {
   EXPECT_NEAR(last(r, "b.rate"), 2, 1e-13);
 }
 
+// A mass on a spring before a wall, x = 1 + (1 + beyond) cos(t + phase).
+Result swing(double beyond, double phase, double until, double tolerance) {
+  Mechanism m("mass");
+  m.body("mass", {.mass = 1, .at = {0, 0, 0}});
+  m.slider("way", kWorld, "mass", {.axis = {1, 0, 0}, .stiffness = 1, .rest = 1});
+  m.gravity({0, 0, 0});
+  m.wall("wall", {.distance = "way.position", .restitution = 1});
+  m.start({{"way.position", 1 + (1 + beyond) * std::cos(phase)},
+           {"way.rate", -(1 + beyond) * std::sin(phase)}});
+  return simulate(m).until(until).tolerance({.relative = tolerance}).slip().run();
+}
+
+TEST(Walls, AGrazingIsNoted) {
+  const Result grazes = swing(-4e-10, 0, 10, 1e-13);
+  EXPECT_TRUE(grazes.events.empty());
+  EXPECT_THAT(grazes.notes, testing::Contains(HasSubstr("contact 'wall' comes within 4e-10 at t = "
+                                                        "3.14159")));
+  EXPECT_THAT(swing(-1e-8, 0, 10, 1e-13).notes,
+              testing::Not(testing::Contains(HasSubstr("grazing"))));
+}
+
+// A dip of 1e-7, which lasts 1e-3 s, anywhere in a step and at its nodes too, which the phase
+// moves.
+TEST(Walls, AShortStrikeIsFoundWhereverItIsInAStep) {
+  for (int i = 0; i < 200; ++i) {
+    const double phase = 0.005 * i;
+    const Result r = swing(1e-7, phase, 4 - phase, 1e-11);
+    ASSERT_TRUE(r.status.ok) << r.status.reason;
+    EXPECT_THAT(names(r), ElementsAre("wall.strikes")) << phase;
+  }
+}
+
 }  // namespace
 }  // namespace hamel

@@ -8,7 +8,7 @@
 #include <tuple>
 
 #include <hamel/framework/run/data/data_system.hpp>
-#include <hamel/framework/run/run/nodal_quadrature.hpp>
+#include <hamel/framework/run/run/rows/nodal_quadrature.hpp>
 #include <hamel/groups/exp.hpp>
 #include <hamel/groups/product_retraction.hpp>
 #include <hamel/systems/segway.hpp>

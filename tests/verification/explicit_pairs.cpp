@@ -13,10 +13,13 @@
 #include <hamel/framework/schemes/tsit5.hpp>
 #include <hamel/framework/study/parts.hpp>
 
+#include "../framework/distances.hpp"
 #include "without_dtau.hpp"
 
 namespace hamel {
 namespace {
+
+using test::distance;
 
 struct Case {
   std::string system;
@@ -55,11 +58,6 @@ Simulation run_of(const Case& c, const std::string& scheme, const Registry& know
   Simulation out(known, c.system);
   for (const auto& [name, value] : c.set) out.set(name, value);
   return out.start(c.start).scheme(scheme).step(c.step).until(c.until).every(1000000);
-}
-
-double distance(const Result& a, const Result& b) {
-  return euclidean_distance(a.last.coordinates, b.last.coordinates) +
-         euclidean_distance(a.last.velocity, b.last.velocity);
 }
 
 // At the tightest tolerance, and another tableau agrees.

@@ -6,9 +6,12 @@
 
 #include <hamel/hamel.hpp>
 
+#include "../framework/distances.hpp"
+
 namespace {
 
 using namespace hamel;
+using hamel::test::distance;
 
 const char* const kPlaces[] = {"nodes", "base"};
 /// Those with a potential or a force.
@@ -21,11 +24,6 @@ Result run(const std::string& system, const Start& start, const char* place, dou
   Simulation simulation = simulate(system);
   if (!start.velocity.empty()) simulation.start(start);
   return simulation.with(&Config::force_at, std::string(place)).step(step).until(until).run();
-}
-
-double distance(const Result& a, const Result& b) {
-  return euclidean_distance(a.last.coordinates, b.last.coordinates) +
-         euclidean_distance(a.last.velocity, b.last.velocity);
 }
 
 /// A blade that slides straight down the slope: at the base point the force across it leaves a

@@ -30,12 +30,6 @@ std::vector<double> end_of(const Result& result) {
   return out;
 }
 
-double distance(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0;
-  for (size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
-  return std::sqrt(sum);
-}
-
 std::vector<std::string> general_systems() {
   std::vector<std::string> out;
   for (const std::string& name : registry().systems()) {
@@ -76,7 +70,8 @@ TEST_P(GeneralOrders, AreAsClaimed) {
             system + ", " + scheme + ", " + retraction + ", s = " + std::to_string(s);
         ASSERT_TRUE(a.status.ok) << what << ": " << a.status.reason;
         ASSERT_TRUE(b.status.ok) << what << ": " << b.status.reason;
-        const double coarse_error = distance(end_of(a), end), fine_error = distance(end_of(b), end);
+        const double coarse_error = euclidean_distance(end_of(a), end),
+                     fine_error = euclidean_distance(end_of(b), end);
         const double order = std::log2(coarse_error / fine_error);
         if (fine_error > 1e-10) {  // else exact up to round-off: nothing to measure
           const double bound = claim.order == 1   ? 0.1
@@ -162,7 +157,7 @@ TEST(GeneralSchemes, AreTheCompiledOnesOnLeftInvariantSystems) {
           }
           const Result fast = Simulation(registry(), system).config(config).run();
           const Result slow = Simulation(general, system).config(config).run();
-          EXPECT_LT(distance(end_of(fast), end_of(slow)), 1e-11)
+          EXPECT_LT(euclidean_distance(end_of(fast), end_of(slow)), 1e-11)
               << system << ", " << scheme << ", " << retraction << ", s = " << s;
         }
       }

@@ -94,13 +94,15 @@ endif()
 install(FILES ${PROJECT_BINARY_DIR}/hamel.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT dev)
 
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT doc)
-# The commands, and the four kinds of TOML files with an example of a system by data; folders as in the tree.
-foreach(page tools/README.md systems/README.md systems/mechanisms/README.md
-        systems/mechanisms/kick_scooter.toml tests/examples/scooter_by_rows.toml
-        tests/examples/skate_in_a_bowl.toml tests/examples/contact_oscillator.toml
-        tests/examples/particle_in_potential.toml)
+# The commands, and the kinds of TOML files; folders as in the tree.
+foreach(page tools/README.md systems/README.md systems/mechanisms/README.md systems/mechanisms/kick_scooter.toml)
   cmake_path(GET page PARENT_PATH folder)
   install(FILES ${PROJECT_SOURCE_DIR}/${page} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${folder} COMPONENT doc)
+endforeach()
+# All examples: programs, systems by data, mechanisms, robots, in C++, TOML and Python.
+foreach(folder tests/examples tools/python/examples)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder}/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/${folder} COMPONENT doc
+          FILES_MATCHING PATTERN *.cpp PATTERN *.toml PATTERN *.csv PATTERN *.urdf PATTERN *.py)
 endforeach()
 # The site, where tools/docs/build has made it; only in the package, since it is no part of the build.
 install(DIRECTORY ${PROJECT_BINARY_DIR}/docs/html DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT doc

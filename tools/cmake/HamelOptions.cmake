@@ -12,8 +12,12 @@ option(HAMEL_WERROR "Treat warnings in our own sources as errors" ${PROJECT_IS_T
 option(HAMEL_PCH "Parse Eigen and the standard library once for all layers" ${PROJECT_IS_TOP_LEVEL})
 option(HAMEL_UNITY "Compile sources but kernels eight at a time: half the processor time of a whole build" ON)
 option(HAMEL_SANITIZE "Build with AddressSanitizer and UndefinedBehaviorSanitizer; with clang, the fuzz targets too" OFF)
-set(HAMEL_REPORT_PAGE AUTO CACHE STRING
-    "The report page needs node and npm: ON fails without them, AUTO builds the program without it")
+set(page OFF)  # a part of another project fetches nothing
+if(PROJECT_IS_TOP_LEVEL)
+  set(page AUTO)
+endif()
+set(HAMEL_REPORT_PAGE ${page} CACHE STRING
+    "The report page needs node and npm: ON fails without them, AUTO builds without it, OFF never")
 set_property(CACHE HAMEL_REPORT_PAGE PROPERTY STRINGS AUTO ON OFF)
 set(HAMEL_PYTHON AUTO CACHE STRING
     "The Python package needs build/venv (tools/setup --python): ON fails without, AUTO builds without it, OFF never")

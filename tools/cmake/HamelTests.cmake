@@ -3,7 +3,7 @@
 # Headers of installed packages that single tests NEED beyond the library:
 #   hamel_jet      ceres::Jet                         hamel_mpreal   mpfr::mpreal, any number of digits
 #   hamel_valijson validation by JSON schema; without it that test is left out
-#   hamel_page     the program's report page in C++; the test brings its own report_page()
+#   hamel_page     the report page in C++; the test brings its own report_page()
 find_path(HAMEL_CERES_INCLUDE ceres/jet.h REQUIRED)
 find_path(HAMEL_MPREAL_INCLUDE mpreal.h REQUIRED)
 find_library(HAMEL_MPFR mpfr REQUIRED)
@@ -21,8 +21,7 @@ add_library(hamel_mpreal INTERFACE)
 target_include_directories(hamel_mpreal SYSTEM INTERFACE ${HAMEL_MPREAL_INCLUDE})
 target_link_libraries(hamel_mpreal INTERFACE ${HAMEL_MPFR} ${HAMEL_GMP})
 add_library(hamel_page INTERFACE)
-target_sources(hamel_page INTERFACE ${PROJECT_SOURCE_DIR}/tools/hamel/pages/page.cpp)
-target_include_directories(hamel_page INTERFACE ${PROJECT_SOURCE_DIR}/tools/hamel)
+target_sources(hamel_page INTERFACE ${PROJECT_SOURCE_DIR}/framework/pages/page.cpp)
 target_link_libraries(hamel_page INTERFACE hamel::figures fmt::fmt nlohmann_json::nlohmann_json)
 
 # Is the program configured with its report page?

@@ -16,7 +16,7 @@ function(write_source page)  # leaves the file alone where nothing changed
 "// Written by tools/cmake/build_report_page.cmake: ${WORK}/page.html.
 #include <string_view>
 
-namespace hamel::tools {
+namespace hamel::pages {
 
 std::string_view report_page();
 
@@ -25,7 +25,7 @@ std::string_view report_page() {
   return {page, sizeof(page) - 1};
 }
 
-}  // namespace hamel::tools
+}  // namespace hamel::pages
 ")
 endfunction()
 
@@ -33,7 +33,7 @@ function(without_page reason)
   if(MODE STREQUAL "ON")
     message(FATAL_ERROR "hamel: no report page: ${reason}")
   endif()
-  message("hamel: the program is built WITHOUT its report page: ${reason}")
+  message("hamel is built WITHOUT its report page: ${reason}")
   file(REMOVE ${WORK}/page.html)
   write_source("")
 endfunction()

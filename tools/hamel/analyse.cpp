@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include <hamel/framework/analysis/analysis.hpp>
+#include <hamel/framework/io/note_lines.hpp>
 #include <hamel/systems/by_name.hpp>
 
 #include "commands.hpp"
@@ -124,7 +125,7 @@ int analyse(const DescribeOptions& options) {
       "name)\n");
   if (a.conserved.empty()) say("     nothing among their linear combinations\n");
   for (const auto& c : a.conserved) say("     {}   (change {:.1e})\n", c.expression, c.change);
-  for (const std::string& note : a.notes) say("  {}\n", note);
+  say("{}", note_lines(a.notes, 9, Notes{options.verbose}));
   return 0;
 }
 

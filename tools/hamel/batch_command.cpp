@@ -16,6 +16,8 @@
 #include "words/screen.hpp"
 
 namespace hamel::tools {
+
+using pages::report_page;
 namespace {
 
 long count_of(const char* name, const char* text) {

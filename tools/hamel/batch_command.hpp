@@ -9,12 +9,14 @@
 
 #include <hamel/framework/batch/batch.hpp>
 #include <hamel/framework/batch/shards.hpp>
+#include <hamel/framework/pages/page.hpp>
 
 #include "commands.hpp"
-#include "pages/page.hpp"
 #include "words/interrupt.hpp"
 
 namespace hamel::tools {
+
+using pages::Page;
 
 /// Outputs of a result, each made when it is needed.
 struct BatchOutput {

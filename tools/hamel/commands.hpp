@@ -25,6 +25,7 @@ struct DescribeOptions {
   bool analyse = false;
   bool toml = false;
   bool json = false;
+  bool verbose = false;
 };
 int describe(const DescribeOptions& options);
 int analyse(const DescribeOptions& options);
@@ -42,6 +43,7 @@ struct RunOptions {
   std::string report;                // --report
   bool json = false;
   bool quiet = false;
+  bool verbose = false;
 };
 int run(const RunOptions& options);
 
@@ -80,6 +82,7 @@ struct PartOptions {
   bool fresh = false;
   bool json = false;
   bool quiet = false;
+  bool verbose = false;
 };
 
 int study(const PartOptions& options);

@@ -310,7 +310,7 @@ int describe(const DescribeOptions& options) {
   if (options.analyse) return analyse(options);
   const Json json = description_of(options.name, options.parameters);
   if (options.json) say_json(json);
-  else print_description(json);
+  else print_description(json, Notes{options.verbose});
   return 0;
 }
 

@@ -9,12 +9,13 @@
 
 #include <hamel/framework/ensemble/ensemble.hpp>
 #include <hamel/framework/figures/figures.hpp>
+#include <hamel/framework/io/note_lines.hpp>
+#include <hamel/framework/pages/ensemble_page.hpp>
+#include <hamel/framework/pages/run_page.hpp>
 #include <hamel/systems/by_name.hpp>
 
 #include "batch_command.hpp"
 #include "commands.hpp"
-#include "pages/ensemble_page.hpp"
-#include "pages/run_page.hpp"
 #include "words/interrupt.hpp"
 #include "words/screen.hpp"
 
@@ -35,7 +36,7 @@ std::string varied_of(const EnsembleResult& result, long member) {
   return out;
 }
 
-std::string summary(const EnsembleResult& result) {
+std::string summary(const EnsembleResult& result, Notes length) {
   std::string out = fmt::format("{}: {} members", result.config.run.system, result.members);
   if (result.resumed > 0) out += fmt::format(", {} were there", result.resumed);
   out += fmt::format("\n  failed                 {}\n", result.failures.size());
@@ -62,23 +63,9 @@ std::string summary(const EnsembleResult& result) {
   for (size_t i = 0; i < result.class_counts.size(); ++i)
     out +=
         fmt::format("  {:<{}} {}\n", result.config.classes.names[i], width, result.class_counts[i]);
-  for (const std::string& note : result.notes)
-    out += fmt::format("  note                   {}\n", note);
+  out += note_lines(result.notes, 25, length);
   return out + fmt::format("  time                   {:.2f} s on {} thread{}\n", result.seconds,
                            result.threads, result.threads == 1 ? "" : "s");
-}
-
-// The member as a run; no result where it does not start, or is interrupted.
-std::optional<Result> run_of(const Member& member, const std::string& output = "") {
-  if (member.config.system.empty()) return std::nullopt;
-  Simulation simulation(registry(), member.config.system);
-  simulation.config(member.config).keep_rows(kRowsOfPage);
-  if (!output.empty()) simulation.record_to(output);
-  const std::atomic<bool>& stop = stop_when_asked();
-  simulation.progress([&](double) {
-    if (stop) throw Unfinished("interrupted");
-  });
-  return simulation.run();
 }
 
 // The members that the file names as runs: their configurations and rows.
@@ -92,21 +79,8 @@ void write_trajectories(const Ensemble& ensemble, const std::string& folder) {
     // Left by one that was interrupted here: this run writes them anew.
     std::error_code error;
     if (!locked(part_of(rows))) fs::remove(part_of(rows), error);
-    run_of(member, rows);
+    pages::run_of(ensemble, member, &stop_when_asked(), rows);
   }
-}
-
-// The figures of the motions that the page shows.
-std::map<long, Page> motions_of(const Ensemble& ensemble, const EnsembleResult& result) {
-  std::map<long, Page> out;
-  for (const long k : members_in_motion(result)) {
-    const std::optional<Result> one = run_of(ensemble.member(k));
-    if (!one || !one->status.ok) continue;
-    Page page(fmt::format("Member {}", k), "");
-    page.add_section(figures::motion_of_run(registry(), *one), "Motion");
-    if (!page.figures().empty()) out.emplace(k, std::move(page));
-  }
-  return out;
 }
 
 // Shows one member, as values and as a run with its page.
@@ -121,7 +95,7 @@ int one_member(const EnsembleOptions& options, const Ensemble& ensemble) {
     fs::create_directories(options.directory);
     const fs::path stem = fs::path(options.directory) / fmt::format("member-{}", member.index);
     write_file(stem.string() + ".toml", member.config.to_toml());
-    if (!report_page().empty()) {
+    if (!pages::report_page().empty()) {
       page = stem.string() + ".html";
       RunOptions running;
       running.config = member.config;
@@ -164,16 +138,17 @@ int ensemble(const EnsembleOptions& options) {
       ensemble,
       [&](const EnsembleResult& result) {
         return command.show(
-            result, {.files = fmt::format("{}ensemble.csv, ensemble.json",
-                                          hdf5_version().empty() ? "" : "ensemble.h5, "),
-                     .write =
-                         [&] {
-                           result.write(command.folder());
-                           write_trajectories(ensemble, command.folder());
-                         },
-                     .page = [&] { return ensemble_page(result, motions_of(ensemble, result)); },
-                     .record = [&] { return result.record(); },
-                     .summary = [&] { return summary(result); }});
+            result,
+            {.files = fmt::format("{}ensemble.csv, ensemble.json",
+                                  hdf5_version().empty() ? "" : "ensemble.h5, "),
+             .write =
+                 [&] {
+                   result.write(command.folder());
+                   write_trajectories(ensemble, command.folder());
+                 },
+             .page = [&] { return pages::ensemble_page(registry(), result, &stop_when_asked()); },
+             .record = [&] { return result.record(); },
+             .summary = [&] { return summary(result, Notes{options.verbose}); }});
       },
       [](const EnsembleResult& result) {
         return fmt::format("{} of {} members are finished", result.done, result.members);

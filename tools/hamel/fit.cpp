@@ -5,20 +5,25 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <hamel/framework/figures/figures.hpp>
+#include <hamel/framework/io/note_lines.hpp>
 #include <hamel/framework/io/output_file.hpp>
 #include <hamel/framework/io/version.hpp>
+#include <hamel/framework/pages/page.hpp>
 #include <hamel/systems/by_name.hpp>
 
 #include "lines/help.hpp"
-#include "pages/page.hpp"
-#include "pages/run_page.hpp"
 #include "words/interrupt.hpp"
 #include "words/screen.hpp"
 
 namespace hamel::tools {
+
+using pages::Cell;
+using pages::Page;
+using pages::page_mistakes;
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -62,6 +67,7 @@ Json json_of_fit(const FitOptions& options, const Fit& fit) {
           {"dof", fit.dof},
           {"sigma", fit.sigma},
           {"undetermined", undetermined},
+          {"segments", fit.segments},
           {"iterations", fit.iterations},
           {"runs", fit.runs},
           {"seconds", fit.seconds},
@@ -84,10 +90,12 @@ void print_fit(const FitOptions& options, const Fit& fit) {
   for (const auto& [name, sigma] : fit.sigma)
     say("  sigma        {} = {:.4g}{}\n", name, sigma,
         options.request.sigma.contains(name) ? "" : ", estimated from the residuals");
+  if (std::ranges::any_of(fit.segments, [](int n) { return n > 1; }))
+    say("  segments     {}\n", fmt::join(fit.segments, ", "));
   for (const auto& direction : fit.undetermined)
     say("  undetermined the data do not see relative changes along {}\n",
         direction_text(direction));
-  for (const std::string& note : fit.notes) say("  note         {}\n", note);
+  say("{}", note_lines(fit.notes, 15, Notes{options.verbose}));
 }
 
 Page page_of_fit(const FitOptions& options, const Fit& fit) {
@@ -156,11 +164,15 @@ void FitLine::define(CLI::App& app) {
                  "(repeatable)")
       ->allow_extra_args(false);
   app.add_option("--loss", loss_, "huber:K: outliers beyond K sigma count less [squares]");
+  app.add_option("--segments", options_.request.segments,
+                 "segments of each recording, whose first states are unknowns too (multiple "
+                 "shooting) [by how fast a displacement grows]");
   app.add_option("-o,--output", options_.output, "write the fitted run, .toml");
   app.add_option("--report", options_.report, "write a self-contained HTML page");
   app.add_flag("--json", options_.json, "print everything as JSON");
   app.add_flag("--quiet", options_.quiet, "print nothing but errors (and --json)");
-  group_options(app, "Fit", {"--fit", "--sigma", "--observe", "--loss"});
+  add_verbose(app, options_.verbose);
+  group_options(app, "Fit", {"--fit", "--sigma", "--observe", "--loss", "--segments"});
   group_options(app, "Motion",
                 {"--config", "--set", "--input", "--configuration", "--velocity", "--momentum",
                  "--speed", "--from"});
@@ -168,7 +180,7 @@ void FitLine::define(CLI::App& app) {
       app, "Method",
       {"--scheme", "--retraction", "--s", "--step", "--rtol", "--atol", "--step-max", "--steps-max",
        "--solver", "--tolerance", "--force-at", "--compose", "--force", "--on-failure"});
-  group_options(app, "Output", {"--output", "--report", "--json", "--quiet"});
+  group_options(app, "Output", {"--output", "--report", "--json", "--quiet", "--verbose"});
   app.footer(
       "Without a scheme, a step and a tolerance: dop853 at rtol 1e-10.\n"
       "Exit status: 0 done, 1 not converged or a direction is undetermined, 2 bad input.\n"

@@ -14,7 +14,7 @@ struct FitOptions {
   Config config;
   FitRequest request;
   std::string output, report;  // -o, --report
-  bool json = false, quiet = false;
+  bool json = false, quiet = false, verbose = false;
 };
 
 /// Its options on the command line.

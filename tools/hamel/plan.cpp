@@ -9,17 +9,19 @@
 
 #include <hamel/framework/inverse/motion_plan.hpp>
 #include <hamel/framework/io/errors.hpp>
+#include <hamel/framework/io/note_lines.hpp>
 #include <hamel/framework/io/output_file.hpp>
 #include <hamel/framework/io/version.hpp>
+#include <hamel/framework/pages/page.hpp>
 #include <hamel/systems/by_name.hpp>
 
 #include "commands.hpp"
-#include "pages/page.hpp"
-#include "pages/run_page.hpp"
 #include "words/interrupt.hpp"
 #include "words/screen.hpp"
 
 namespace hamel::tools {
+
+using pages::page_mistakes;
 namespace {
 
 using PlanJson = nlohmann::ordered_json;
@@ -100,7 +102,7 @@ void print(const PlanOptions& options, const Plan& plan) {
     for (const double x : values) least = std::min(least, x), most = std::max(most, x);
     line("input", fmt::format("{} from {:.6g} to {:.6g}", name, least, most));
   }
-  for (const std::string& note : plan.notes) line("note", note);
+  out += note_lines(plan.notes, 15, Notes{options.verbose});
   if (!options.output.empty()) line("run", command_of(plan, options.output));
   say("{}", out);
 }

@@ -8,7 +8,7 @@ namespace hamel::tools {
 struct PlanOptions {
   std::string file;
   std::string output, report, track;  // -o, --report, --track
-  bool json = false, quiet = false;
+  bool json = false, quiet = false, verbose = false;
 };
 int plan(const PlanOptions& options);
 

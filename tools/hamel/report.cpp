@@ -7,17 +7,26 @@
 
 #include <hamel/framework/figures/figures.hpp>
 #include <hamel/framework/mechanics/system_model.hpp>
+#include <hamel/framework/pages/run_page.hpp>
+#include <hamel/framework/pages/run_verdict.hpp>
 #include <hamel/framework/run/run/recorded_result.hpp>
 #include <hamel/systems/by_name.hpp>
 
 #include "commands.hpp"
 #include "pages/figure_file.hpp"
 #include "pages/motion_file.hpp"
-#include "pages/run_page.hpp"
 #include "words/run_names.hpp"
-#include "words/run_verdict.hpp"
 
 namespace hamel::tools {
+
+using pages::Cell;
+using pages::Figure;
+using pages::kRowsOfPage;
+using pages::Page;
+using pages::page_mistakes;
+using pages::run_page;
+using pages::run_verdict;
+using pages::RunVerdict;
 namespace {
 
 struct ReadRun {
@@ -60,10 +69,14 @@ std::string systems_of(const std::vector<ReadRun>& runs) {
 Page compared(const std::vector<ReadRun>& runs) {
   Page page(fmt::format("{} runs compared", runs.size()), systems_of(runs));
   page.section("Runs");
-  for (const ReadRun& run : runs) {
-    const RunVerdict verdict = run_verdict(run.result);
-    page.verdict(verdict.status, fmt::format("`{}`: {}", run.name, verdict.text));
-  }
+  const auto add_verdicts = [&](bool failed) {
+    for (const ReadRun& run : runs) {
+      const RunVerdict verdict = run_verdict(run.result);
+      if ((verdict.status == "failed") == failed)
+        page.verdict(verdict.status, fmt::format("`{}`: {}", run.name, verdict.text));
+    }
+  };
+  add_verdicts(true);
   std::vector<std::string> columns = {"run", "file", "system", "method", "steps", "ended"};
   std::vector<std::string> measured;
   Measurements::fields([&](const Quantity& quantity, const char* suffix, auto member) {
@@ -100,6 +113,12 @@ Page compared(const std::vector<ReadRun>& runs) {
   const std::vector<Figure> figures = figures::of_runs(named);
   page.add_section(figures, "Accuracy");
   page.add_section(figures, "Motion");
+  // Behind the figures, which a phone would else show below them.
+  if (std::ranges::any_of(
+          runs, [](const ReadRun& run) { return run_verdict(run.result).status != "failed"; })) {
+    page.section("Notes");
+    add_verdicts(false);
+  }
   for (const ReadRun& run : runs) {
     page.section("Record of " + run.name);
     page.record(run.record);
@@ -134,8 +153,9 @@ int report(const ReportOptions& options) {
   }
   if (runs.size() > 1) name_apart(runs);
   else if (!runs.front().lack.empty()) runs.front().result.notes.push_back(runs.front().lack);
-  const Page page =
-      runs.size() > 1 ? compared(runs) : run_page(runs.front().result, runs.front().record);
+  const Page page = runs.size() > 1
+                        ? compared(runs)
+                        : run_page(registry(), runs.front().result, runs.front().record);
   if (alone) write_figure(page, options.figure, output, width);
   else page.write(output);
   return 0;

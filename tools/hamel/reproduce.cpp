@@ -16,6 +16,8 @@
 #include "words/screen.hpp"
 
 namespace hamel::tools {
+
+using pages::report_page;
 namespace {
 
 const Outcome& find(const std::vector<Outcome>& outcomes, const std::string& name) {

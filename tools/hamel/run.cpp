@@ -4,14 +4,17 @@
 
 #include <fmt/format.h>
 
+#include <hamel/framework/io/note_lines.hpp>
+#include <hamel/framework/pages/run_page.hpp>
 #include <hamel/systems/by_name.hpp>
 
 #include "commands.hpp"
-#include "pages/run_page.hpp"
 #include "words/interrupt.hpp"
 #include "words/screen.hpp"
 
 namespace hamel::tools {
+
+using pages::page_mistakes;
 namespace {
 
 // The files with the rows of an unfinished run.
@@ -32,17 +35,18 @@ int run(const RunOptions& options) {
   Simulation simulation(registry(), options.config.system);
   simulation.config(options.config).resume(options.resumed);
   for (const std::string& path : options.outputs) simulation.record_to(path);
-  simulation.keep_rows(options.report.empty() ? 1 : kRowsOfPage);
-  std::vector<std::string> mistakes = simulation.mistakes();
-  if (!options.report.empty()) {
-    const auto more = page_mistakes(options.report);
-    mistakes.insert(mistakes.end(), more.begin(), more.end());
-  }
+  simulation.keep_rows(options.report.empty() ? 1 : pages::kRowsOfPage);
+  std::vector<std::string> mistakes;
+  if (!options.report.empty()) mistakes = page_mistakes(options.report);
   const bool rows_to_screen =
       std::find(options.outputs.begin(), options.outputs.end(), "-") != options.outputs.end();
   if (rows_to_screen && options.json)
     mistakes.emplace_back("output: rows and --json would both go to standard output");
-  if (!mistakes.empty()) throw ConfigError(mistakes);
+  if (!mistakes.empty()) {
+    std::vector<std::string> all = simulation.mistakes();
+    all.insert(all.end(), mistakes.begin(), mistakes.end());
+    throw ConfigError(all);
+  }
 
   const std::atomic<bool>& stop = stop_when_asked();
   Result result;
@@ -61,9 +65,10 @@ int run(const RunOptions& options) {
       throw Unfinished(reason.what() + kept(options));
     }
   }
-  if (!options.report.empty()) run_page(result, result.record()).write(options.report);
+  if (!options.report.empty())
+    pages::run_page(registry(), result, result.record()).write(options.report);
   if (options.json) say("{}\n", result.record());
-  else if (!options.quiet && !rows_to_screen) say("{}", result.report());
+  else if (!options.quiet && !rows_to_screen) say("{}", result.report(Notes{options.verbose}));
   if (!result.status.ok) {
     complain("hamel: failed in step {} at t = {:.6g}: {} (residual {:.2e})\n", result.status.step,
              result.status.time, result.status.reason, result.status.residual);

@@ -8,17 +8,22 @@
 #include <nlohmann/json.hpp>
 
 #include <hamel/framework/figures/figures.hpp>
+#include <hamel/framework/io/note_lines.hpp>
 #include <hamel/framework/io/output_file.hpp>
 #include <hamel/framework/io/version.hpp>
+#include <hamel/framework/pages/page.hpp>
 #include <hamel/systems/by_name.hpp>
 
 #include "lines/help.hpp"
-#include "pages/page.hpp"
-#include "pages/run_page.hpp"
 #include "words/interrupt.hpp"
 #include "words/screen.hpp"
 
 namespace hamel::tools {
+
+using pages::Cell;
+using pages::Figure;
+using pages::Page;
+using pages::page_mistakes;
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -95,10 +100,11 @@ void print(const SectionOptions& options, const Section& section) {
     most = std::max(most, o.energy);
   }
   if (most - least > 1e-6 * std::max(std::abs(least), std::abs(most)))
-    say("  note       the starts have energies from {:.6g} to {:.6g} J: not one surface; --energy "
-        "E "
-        "gives all the same\n",
-        least, most);
+    say("{}", note_lines(
+                  {fmt::format("the starts have energies from {:.6g} to {:.6g} J: not one surface; "
+                               "--energy E gives all the same",
+                               least, most)},
+                  13, Notes{options.verbose}));
 }
 
 }  // namespace
@@ -110,7 +116,7 @@ static const std::vector<std::string> kOfRows = {"every",   "output_step", "outp
 void SectionLine::define(CLI::App& app) {
   line_.define_run(app, {kOfRows.begin(), kOfRows.end()});
   for (const char* name : {"event", "direction", "count", "starts", "energy", "report", "axes",
-                           "output", "json", "quiet"})
+                           "output", "json", "quiet", "verbose"})
     line_.own[name];
   for (const std::string& name : RobotLine::keys()) line_.own[name];
   app.add_option("--event", options_.request.event,
@@ -130,6 +136,7 @@ void SectionLine::define(CLI::App& app) {
   app.add_option("--axes", options_.axes, "columns of the page's axes, A,B [the first that vary]");
   app.add_flag("--json", options_.json, "print everything as JSON");
   app.add_flag("--quiet", options_.quiet, "print nothing but errors (and --json)");
+  add_verbose(app, options_.verbose);
   group_options(app, "Section", {"--event", "--direction", "--count", "--starts", "--energy"});
   group_options(app, "Motion",
                 {"--config", "--set", "--input", "--configuration", "--velocity", "--momentum",
@@ -138,7 +145,8 @@ void SectionLine::define(CLI::App& app) {
       app, "Method",
       {"--scheme", "--retraction", "--s", "--step", "--rtol", "--atol", "--step-max", "--steps-max",
        "--solver", "--tolerance", "--force-at", "--compose", "--force", "--on-failure"});
-  group_options(app, "Output", {"--output", "--report", "--axes", "--json", "--quiet"});
+  group_options(app, "Output",
+                {"--output", "--report", "--axes", "--json", "--quiet", "--verbose"});
   app.footer(
       "Without a scheme, a step and a tolerance: dop853 at rtol 1e-10.\n"
       "Exit status: 0 done, 1 points are missing (those found are written), 2 bad input.\n"
@@ -164,6 +172,7 @@ void SectionLine::take_from_file(const CLI::App& app) {
   line_.take(app, "axes", options_.axes);
   line_.take(app, "json", options_.json);
   line_.take(app, "quiet", options_.quiet);
+  line_.take(app, "verbose", options_.verbose);
 }
 
 SectionOptions SectionLine::resolve(const CLI::App& app) {

@@ -16,7 +16,7 @@ struct SectionOptions {
   std::string starts;          // a CSV file
   std::string axes;            // --axes A,B of the page; empty: the first two that vary
   std::string output, report;  // -o, --report
-  bool json = false, quiet = false;
+  bool json = false, quiet = false, verbose = false;
 };
 
 /// Its options on the command line.

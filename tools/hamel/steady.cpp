@@ -6,18 +6,22 @@
 #include <fmt/format.h>
 
 #include <hamel/framework/figures/figures.hpp>
+#include <hamel/framework/io/errors.hpp>
+#include <hamel/framework/io/note_lines.hpp>
 #include <hamel/framework/mechanics/system.hpp>
+#include <hamel/framework/pages/page.hpp>
 #include <hamel/framework/run/names/registry.hpp>
 #include <hamel/framework/run/record/velocity_text.hpp>
 #include <hamel/systems/by_name.hpp>
 
-#include "pages/run_page.hpp"
 #include "pages/steady_page.hpp"
 #include "steady.hpp"
 #include "words/screen.hpp"
 #include "words/steady_json.hpp"
 
 namespace hamel::tools {
+
+using pages::page_mistakes;
 namespace {
 
 constexpr int kMostPoints = 100000;
@@ -166,6 +170,15 @@ std::string moved(const SystemModel& system, const Config& config, const SteadyM
                      *config.speed, out);
 }
 
+// --vary names the speed, where the system defines a straight motion, or a parameter.
+void refuse_unknown(const SystemModel& system, const std::string& name) {
+  std::vector<std::string> known;
+  for (const Field& field : system.fields) known.push_back(field.name);
+  if (system.start_at_speed) known.emplace_back("speed");
+  if (std::ranges::find(known, name) == known.end())
+    throw ConfigError({"--vary: " + unknown_name("parameter of " + system.name, name, known)});
+}
+
 void refuse_large(const SystemModel& system) {
   if (system.group.dim > kMostDimension)
     throw ConfigError(
@@ -180,6 +193,7 @@ int steady(const SteadyOptions& options) {
   std::optional<Vary> vary;
   if (!options.vary.empty()) vary.emplace(options.vary);
   refuse_mistakes(options, vary.has_value());
+  if (vary) refuse_unknown(at(options, "", 0).build().system(), vary->name);
   const Simulation first = at(options, vary ? vary->name : "", vary ? vary->values[0] : 0);
   const Run built = first.build();
   const SystemModel& system = built.system();
@@ -199,7 +213,7 @@ int steady(const SteadyOptions& options) {
     say_json(out);
   } else {
     print(system, motion, vary ? &*vary : nullptr, sweep);
-    if (!note.empty()) say("  note         {}\n", note);
+    if (!note.empty()) say("{}", note_lines({note}, 16, Notes{options.verbose}));
   }
   if (!options.report.empty())
     steady_page(system, sweep, command_line(options)).write(options.report);

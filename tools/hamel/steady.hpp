@@ -13,7 +13,7 @@ struct SteadyOptions {
   std::string vary;       // name=from:to:count
   bool branches = false;  // follow those that cross it, too
   std::string report;     // --report
-  bool json = false;
+  bool json = false, verbose = false;
   std::optional<double> sample_time;  // of the discrete pair, in s
 };
 int steady(const SteadyOptions& options);

@@ -4,15 +4,21 @@
 
 #include <fmt/format.h>
 
+#include <hamel/framework/io/note_lines.hpp>
+#include <hamel/framework/pages/study_page.hpp>
 #include <hamel/framework/run/record/result.hpp>
 #include <hamel/systems/by_name.hpp>
 
 #include "batch_command.hpp"
 #include "commands.hpp"
-#include "pages/study_page.hpp"
 #include "words/screen.hpp"
 
 namespace hamel::tools {
+
+using pages::Cell;
+using pages::study_page;
+using pages::study_verdicts;
+using pages::Verdict;
 namespace {
 
 // Without the marks of Markdown, which the page understands.
@@ -72,7 +78,7 @@ std::string table_of(const Verdict& verdict) {
   return out;
 }
 
-std::string summary(const StudyResult& result) {
+std::string summary(const StudyResult& result, Notes length) {
   std::map<std::string, int> counts;
   const Table table = result.table();
   for (size_t i = 0; i < table.rows(); ++i) ++counts[table.column("status").text(i)];
@@ -90,8 +96,7 @@ std::string summary(const StudyResult& result) {
     if (reference.bound >= 0) out += fmt::format(", its error at most {:.1e}", reference.bound);
     out += '\n';
   }
-  for (const std::string& note : result.notes)
-    out += fmt::format("  note                   {}\n", note);
+  out += note_lines(result.notes, 25, length);
   for (const Verdict& verdict : study_verdicts(result))
     out += fmt::format("  [{}] {}\n{}", verdict.status, plain(verdict.text), table_of(verdict));
   return out + fmt::format("  time                   {:.1f} s on {} thread{}\n", result.seconds,
@@ -114,7 +119,10 @@ int study(const PartOptions& options) {
                              .page = [&] { return study_page(result); },
                              .record = [&] { return result.record(); },
                              .summary =  // verdicts are of the whole
-                             [&] { return result.shard.count > 1 ? "" : summary(result); }});
+                             [&] {
+                               if (result.shard.count > 1) return std::string();
+                               return summary(result, Notes{options.verbose});
+                             }});
       },
       [](const StudyResult& result) {
         size_t done = 0, all = 0;

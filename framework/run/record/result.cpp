@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <hamel/framework/io/errors.hpp>
+#include <hamel/framework/io/note_lines.hpp>
 #include <hamel/framework/mechanics/system_model.hpp>
 #include <hamel/framework/run/record/sink.hpp>
 #include <hamel/framework/run/record/velocity_text.hpp>
@@ -128,7 +129,7 @@ static bool all_holonomic(const Mechanics& mechanics) {
   return rows > 0 && rows == mechanics.holonomic_rows();
 }
 
-std::string Result::report() const {
+std::string Result::report(Notes length) const {
   require_run("report");
   std::string out = fmt::format("{} on {}: {}, {}\n", system->name, system->group.name, method(),
                                 steps_in_words());
@@ -146,7 +147,7 @@ std::string Result::report() const {
                                status.time, status.reason, status.residual));
     line("kept", fmt::format("{} good steps to t = {:.6g}", steps, last.time));
   }
-  for (const std::string& note : notes) line("note", note);
+  out += note_lines(notes, 25, length);
   line("final velocity", final_velocity(*this));
   if (std::find(unused.begin(), unused.end(), "solver") == unused.end()) {
     line("solver", solver_in_words(stats, steps));

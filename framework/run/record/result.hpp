@@ -9,6 +9,7 @@
 
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/io/export.hpp>
+#include <hamel/framework/io/note_lines.hpp>
 #include <hamel/framework/io/output_file.hpp>
 #include <hamel/framework/io/row_file.hpp>
 #include <hamel/framework/loop/snapshot.hpp>
@@ -97,8 +98,9 @@ struct HAMEL_API Result : Measurements {
   std::string steps_in_words() const;
   /// The record of tools/README.md as JSON; indent < 0 for one line.
   std::string record(int indent = 2) const;
-  /// Report on one screen: status, iterations, drifts, error against the exact solution.
-  std::string report() const;
+  /// Report on one screen: status, notes, iterations, drifts, error against the exact solution.
+  /// The whole text of the notes is in `notes`.
+  std::string report(Notes length = Notes::brief) const;
   /// Writes by extension, output_formats(): the rows that are in memory and the record, or (.json)
   /// the record. The file appears whole or not at all. ConfigError when it cannot be written.
   void write(const std::string& path) const;

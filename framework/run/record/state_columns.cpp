@@ -87,6 +87,17 @@ StateColumns::StateColumns(const SystemModel& system, const Has& has) : sensors_
     for (Column& column : columns_)
       if (column.of == Of::mode) column.place = place++;
   }
+  if (has.friction_works) {
+    for (const ContactLaw& law : system.contact_laws)
+      if (!law.tangential.empty())
+        add(Of::friction_work,
+            {friction_work_column(law),
+             "J",
+             "work of its friction since the start",
+             "",
+             {friction_work_column(law)}},
+            {"J"});
+  }
   if (has.exact) {
     add(Of::exact_error, kExactError);
     add(Of::exact_velocity_error, kExactVelocityError);
@@ -206,6 +217,7 @@ double StateColumns::value(std::size_t i, const Snapshot& state, const StateExtr
     case Of::acceleration: return measured(column.place, state, extras);
     case Of::path: return extras.paths.empty() ? 0 : extras.paths[column.place];
     case Of::mode: return extras.modes.empty() ? 0 : extras.modes[column.place];
+    case Of::friction_work: return 0;  // known when it is settled
     case Of::exact_error: return extras.exact_error;
     case Of::exact_velocity_error: return extras.exact_velocity_error;
     case Of::output: return output(column.place, state, extras);

@@ -51,6 +51,7 @@ class StateColumns {
     acceleration,  // of a sensor
     path,          // of a sensor
     mode,
+    friction_work,  // of a contact
     exact_error,
     exact_velocity_error,
     output
@@ -61,6 +62,7 @@ class StateColumns {
     bool acceleration = false;
     bool modes = false;
     bool paths = false;
+    bool friction_works = false;  // of contacts
   };
   StateColumns(const SystemModel& system, const Has& has);
 

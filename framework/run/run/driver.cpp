@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -56,8 +57,13 @@ std::shared_ptr<const Mechanics> Driver::acting() const {
 
 EnergyBalance Driver::balance() const {
   if (plan_.contacts != nullptr) {
-    return {plan_.geometry, plan_.contacts->balanced(plan_.contacts), plan_.setup.inputs,
-            plan_.reactions};
+    const Mechanics& system = *plan_.system->mechanics;
+    std::function<bool()> idle;  // friction is all that does work
+    if (!system.has_force() && !system.has_drift())
+      idle = [contacts = plan_.contacts] { return !contacts->any_slides(); };
+    return {plan_.geometry,     plan_.contacts->balanced(plan_.contacts),
+            plan_.setup.inputs, plan_.reactions,
+            std::move(idle),    plan_.contacts};
   }
   return {plan_.geometry, acting(), plan_.setup.inputs, plan_.reactions};
 }

@@ -15,11 +15,11 @@
 #include <hamel/framework/run/run/dense_output.hpp>
 #include <hamel/framework/run/run/events.hpp>
 #include <hamel/framework/run/run/occupancy.hpp>
-#include <hamel/framework/run/run/plan.hpp>
-#include <hamel/framework/run/run/restarted_kernel.hpp>
-#include <hamel/framework/run/run/rows_watch.hpp>
-#include <hamel/framework/run/run/run_recorder.hpp>
-#include <hamel/framework/run/run/step_watch.hpp>
+#include <hamel/framework/run/run/plan/plan.hpp>
+#include <hamel/framework/run/run/rows/rows_watch.hpp>
+#include <hamel/framework/run/run/rows/run_recorder.hpp>
+#include <hamel/framework/run/run/steps/restarted_kernel.hpp>
+#include <hamel/framework/run/run/steps/step_watch.hpp>
 
 namespace hamel {
 

@@ -3,11 +3,15 @@
 #include <stdexcept>
 #include <utility>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <hamel/framework/run/run/driver.hpp>
 
 namespace hamel {
 
 bool Driver::good(const Snapshot& state) {
+  if (state.coordinates.empty() && flaw_of(state) == Reason::converged) return true;  // a bare one
   const std::string why = flaw(state);
   if (why.empty()) return true;
   if (result_.status.ok)
@@ -95,6 +99,11 @@ Result& Driver::end() {
     result_.inputs = std::move(shell.inputs);
     result_.unused = std::move(shell.unused);
     result_.notes = std::move(shell.notes);
+    const std::vector<std::string>& stops = plan_.config.stop_at;
+    if (!stops.empty() && result_.status.ok && !result_.stopped_by_event && reached_end())
+      result_.notes.push_back(fmt::format(
+          "stop_at: {}{} was {}met before the end, t = {:.10g}", stops.size() > 1 ? "none of " : "",
+          fmt::join(stops, ", "), stops.size() > 1 ? "" : "not ", kernel().time()));
     if (plan_.contacts != nullptr)
       result_.notes.insert(result_.notes.end(), plan_.contacts->notes.begin(),
                            plan_.contacts->notes.end());

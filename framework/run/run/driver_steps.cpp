@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include <hamel/framework/run/run/driver.hpp>
-#include <hamel/framework/run/run/small_steps.hpp>
+#include <hamel/framework/run/run/steps/small_steps.hpp>
 
 namespace hamel {
 namespace {

@@ -1,7 +1,7 @@
 // The error of a run by two finer ones (check). Not installed.
 #pragma once
 
-#include <hamel/framework/run/run/plan.hpp>
+#include <hamel/framework/run/run/plan/plan.hpp>
 
 namespace hamel {
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <boost/math/tools/toms748_solve.hpp>
@@ -12,10 +13,13 @@
 #include <hamel/framework/mechanics/quantity_names.hpp>
 #include <hamel/framework/mechanics/system_model.hpp>
 #include <hamel/framework/run/data/event_formula.hpp>
-#include <hamel/framework/run/run/reactions.hpp>
+#include <hamel/framework/run/run/rows/reactions.hpp>
 
 namespace hamel {
 namespace {
+
+// Where a parabola turns above this part of the lower end of a step, the event turns far from 0.
+constexpr double kTurnsFar = 0.8;
 
 // "2_x1=1.5": columns whose names no formula may have, too.
 std::optional<Event> plane(const SystemModel& system, const std::string& text) {
@@ -33,23 +37,19 @@ std::optional<Event> plane(const SystemModel& system, const std::string& text) {
                }};
 }
 
-struct End {
-  double t, value;
-};
-
 // The time behind the crossing of zero between two ends of opposite sign, the later one's side of
 // the bracket.
 template <class Inside>
-double crossing_time(const Inside& inside, End before, End now) {
+double crossing_time(const Inside& inside, ValueAt before, ValueAt now) {
   const auto value = [&](double t) {
-    return t == before.t ? before.value : t == now.t ? now.value : inside(t);
+    return t == before.time ? before.value : t == now.time ? now.value : inside(t);
   };
-  const double width = 1e-12 * std::abs(now.t - before.t);
+  const double width = 1e-12 * std::abs(now.time - before.time);
   std::uintmax_t most = 100;
-  const bool forward = now.t > before.t;
-  const End low = forward ? before : now, high = forward ? now : before;
+  const bool forward = now.time > before.time;
+  const ValueAt low = forward ? before : now, high = forward ? now : before;
   const auto [a, b] = boost::math::tools::toms748_solve(
-      value, low.t, high.t, low.value, high.value,
+      value, low.time, high.time, low.value, high.value,
       [width](double x, double y) { return std::abs(y - x) <= width; }, most);
   return forward ? b : a;
 }
@@ -134,6 +134,9 @@ void Events::watch(const SystemModel& system, const std::vector<Event>& known,
   const size_t before = mistakes.size();
   std::optional<Event> event = plane(system, name);
   if (!event) event = event_of_formula(system, name, mistakes);
+  const std::string_view option = "events";
+  for (size_t i = before; i < mistakes.size() && stop; ++i)
+    if (mistakes[i].starts_with(option)) mistakes[i].replace(0, option.size(), "stop_at");
   if (event) watched_.push_back({std::move(*event), stop});
   if (event || mistakes.size() > before) return;
   std::vector<std::string> offered;
@@ -158,7 +161,8 @@ void Events::begin(const Snapshot& state, std::vector<std::string>& mistakes) {
   for (Watched& w : watched_) {
     w.before = value(w, state);
     if (!std::isfinite(w.before))
-      mistakes.push_back(fmt::format("events: {} is {} at the start", w.event.name, w.before));
+      mistakes.push_back(fmt::format("{}: {} is {} at the start", w.stops ? "stop_at" : "events",
+                                     w.event.name, w.before));
   }
 }
 
@@ -178,6 +182,38 @@ void Events::resume(const Snapshot& state, const std::string& met) {
   time_ = state.time;
   for (Watched& w : watched_) {
     w.before = w.event.name == met ? 0 : value(w, state);
+    w.earlier = std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+// The middle of the step is looked at where nodes do not show that the event turns elsewhere, or
+// far from 0.
+template <class Inside>
+std::optional<ValueAt> Events::dip(const Watched& w, ValueAt now, const Inside& inside) const {
+  const double sign = w.before > 0 ? 1 : -1, h = now.time - time_;
+  const ValueAt before = {time_, std::abs(w.before)}, end = {now.time, std::abs(now.value)};
+  if (std::isfinite(w.earlier)) {
+    const Parabola p({earlier_time_, sign * w.earlier}, before, end);
+    const double part = (p.time - time_) / h;
+    const bool turns = p.curvature > 0 && part > -0.5 && part < 1.5;
+    if (!turns || p.least > kTurnsFar * std::min(before.value, end.value)) return {};
+  }
+  const auto value = [&](double t) { return sign * inside(t); };
+  const ValueAt middle = {time_ + h / 2, value(time_ + h / 2)};
+  if (middle.value < 0) return middle;
+  const auto least = find_dip(value, before, middle, end);
+  return least && least->value < 0 ? least : std::nullopt;
+}
+
+template <class Inside, class Add>
+void Events::crossings(const Watched& w, ValueAt now, const Inside& inside, const Add& add) const {
+  const ValueAt before = {time_, w.before};
+  if (before.value * now.value < 0 || (now.value == 0 && before.value != 0)) add(before, now);
+  if (!(before.value * now.value > 0)) return;
+  if (const auto least = dip(w, now, inside)) {
+    const ValueAt other = {least->time, std::copysign(least->value, -before.value)};
+    add(before, other);
+    add(other, now);
   }
 }
 
@@ -185,26 +221,35 @@ Status Events::look(const Snapshot& state, DenseOutput& dense, std::vector<Found
   found.clear();
   Status status;
   Snapshot at;
+  double shown = std::numeric_limits<double>::quiet_NaN();  // the time of that state
+  const auto show = [&](double t) {  // where several events look at one time: once
+    if (t == shown) return true;
+    if (const Status there = dense.at(t, at); !there.ok) status = there;
+    shown = status.ok ? t : std::numeric_limits<double>::quiet_NaN();
+    return status.ok;
+  };
   const double forward = state.time >= time_ ? 1 : -1;
   for (Watched& w : watched_) {
+    const auto inside = [&](double t) {
+      show(t);
+      return value(w, at);
+    };
     // Direction of the change in time, also in a run back; a contact that pulls ends either run.
     const double direction = w.contact() ? w.event.direction : forward * w.event.direction;
-    const double before = w.before, now = value(w, state);
-    w.before = now != 0 ? now : -before;
-    if (before == 0 || !(before * now < 0 || now == 0) || before * direction > 0) continue;
-    double crossing = state.time;
-    if (now != 0) {
-      const auto inside = [&](double t) {
-        if (const Status there = dense.at(t, at); !there.ok) status = there;
-        return value(w, at);
-      };
-      crossing = crossing_time(inside, {time_, before}, {state.time, now});
-    }
+    const auto add = [&](ValueAt before, ValueAt now) {
+      if (before.value * direction > 0) return;
+      const double crossing = now.value == 0 ? now.time : crossing_time(inside, before, now);
+      if (!status.ok) return;
+      if (show(crossing)) found.push_back({at, w.event.name, w.stops});
+    };
+    const ValueAt now = {state.time, value(w, state)};
+    crossings(w, now, inside, add);
     if (!status.ok) return status;
-    if (const Status there = dense.at(crossing, at); !there.ok) return there;
-    found.push_back({at, w.event.name, w.stops});
+    w.earlier = w.before != 0 ? w.before : std::numeric_limits<double>::quiet_NaN();
+    w.before = now.value != 0 ? now.value : -w.before;
   }
   sort_and_cut(found, forward);
+  earlier_time_ = time_;
   time_ = state.time;
   return status;
 }

@@ -3,18 +3,22 @@
 //
 // A bracket [t_k, t_{k+1}] in which an event changes its sign in its direction is narrowed to 1e-12
 // of the step by the method of Alefeld, Potra and Shi (Boost.Math, toms748). An event that crosses
-// twice within one step is not seen. Source: Alefeld, Potra, Shi, Algorithm 748, ACM Trans. Math.
-// Software 21 (1995).
+// twice within one step is looked for where a parabola through three nodes turns in the step or
+// near it, below 0.8 of the values at the step's ends; one that varies faster than the steps is not
+// seen. Source: Alefeld, Potra, Shi, Algorithm 748, ACM Trans. Math. Software 21 (1995).
 #pragma once
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <hamel/framework/run/record/result.hpp>
 #include <hamel/framework/run/run/dense_output.hpp>
+#include <hamel/framework/run/run/dip.hpp>
 
 namespace hamel {
 
@@ -52,8 +56,8 @@ class Events {
 
   template <class Archive>
   void serialize(Archive& archive) {
-    for (Watched& w : watched_) archive(w.before);
-    archive(time_);
+    for (Watched& w : watched_) archive(w.before, w.earlier);
+    archive(time_, earlier_time_);
   }
 
  private:
@@ -62,9 +66,17 @@ class Events {
     bool stops;
     int row = -1;       // of a contact, whose normal reaction is the value
     double before = 0;  // its value, of the last state where it was not 0
+    // Its value at the node before that; NaN where there is none since it last jumped.
+    double earlier = std::numeric_limits<double>::quiet_NaN();
     bool contact() const { return row >= 0; }
   };
   double value(const Watched& w, const Snapshot& state) const;
+  // A look in the step to `now` at which the event has the other sign than at its ends.
+  template <class Inside>
+  std::optional<ValueAt> dip(const Watched& w, ValueAt now, const Inside& inside) const;
+  // add(before, after): for each crossing in the step to `now`.
+  template <class Inside, class Add>
+  void crossings(const Watched& w, ValueAt now, const Inside& inside, const Add& add) const;
   bool watch_stated(const SystemModel& system, const std::vector<Event>& known,
                     const std::string& name, bool stop);
   void watch(const SystemModel& system, const std::vector<Event>& known, const std::string& name,
@@ -74,7 +86,7 @@ class Events {
   std::vector<std::string> switch_stops_;
   std::vector<int> contacts_;             // rows of the system's, watched or not
   std::shared_ptr<Reactions> reactions_;  // null where there are none
-  double time_ = 0;
+  double time_ = 0, earlier_time_ = 0;
 };
 
 /// Events of a system, its own and those of its contacts, without a value: "contact_lost", where

@@ -11,7 +11,7 @@
 #include <hamel/framework/run/data/data_system.hpp>
 #include <hamel/framework/run/record/recorded_system.hpp>
 #include <hamel/framework/run/run/own_system.hpp>
-#include <hamel/framework/run/run/plan.hpp>
+#include <hamel/framework/run/run/plan/plan.hpp>
 
 namespace hamel {
 namespace {

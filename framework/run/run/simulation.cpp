@@ -16,9 +16,9 @@ void add_notes(Result& result, long impacts) {
   const char* or_check = result.config.check ? "" : ", or check";
   if (result.rotation_per_step_max > far && !result.config.chooses_steps()) {
     result.notes.push_back(fmt::format(
-        "a step turns by up to {:.2g} rad: more than {} rarely follows the motion, whatever "
-        "the diagnostics say; take a smaller step{}",
-        result.rotation_per_step_max, far, or_check));
+        "take a smaller step{}: a step turns by up to {:.2g} rad, and more than {} rarely follows "
+        "the motion, whatever the diagnostics say",
+        or_check, result.rotation_per_step_max, far));
   }
   if (impacts > 0) {
     result.notes.push_back(fmt::format(
@@ -38,9 +38,9 @@ void add_notes(Result& result, long impacts) {
       });
   if (!std::isfinite(result.work) && result.energy_error_max > percent && !small) {
     result.notes.push_back(
-        fmt::format("the energy changes by {:.2g} of its size though nothing does work: take a "
-                    "smaller step{}",
-                    result.energy_error_max, or_check));
+        fmt::format("take a smaller step{}: the energy changes by {:.2g} of its size though "
+                    "nothing does work",
+                    or_check, result.energy_error_max));
   }
 }
 

@@ -14,6 +14,8 @@ using Law = Variation::Law;
 TEST(LaneMembers, HaveTheBytesOfMembersOneByOne) {
   EnsembleConfig started = body();
   started.keep.push_back({"", "start.energy"});
+  EnsembleConfig watched = body();  // energies of all lanes at once
+  watched.keep = {{"", "max.energy_error"}, {"", "min.energy"}, {"", "max.omega1"}};
   EnsembleConfig varied = body();
   varied.vary.push_back({"inertia3", Law::uniform, {0.3, 0.6}});
   varied.run.every = 3;
@@ -32,7 +34,9 @@ TEST(LaneMembers, HaveTheBytesOfMembersOneByOne) {
   disk.run.scheme = "lift";
   disk.vary = {{"radius", Law::uniform, {0.2, 0.6}}};
   disk.keep = {{"", "end.energy"}, {"", "end.x_1"}, {"", "max.constraint"}};
-  for (EnsembleConfig config : {started, varied, failing, sleigh, disk}) {
+  EnsembleConfig rolls = disk;
+  rolls.keep = {{"", "max.energy_error"}, {"", "max.energy"}};
+  for (EnsembleConfig config : {started, watched, varied, failing, sleigh, disk, rolls}) {
     ASSERT_NE(ensemble::Plan(registry(), config).lanes, nullptr);  // they are used
     const Ensemble ensemble(registry(), config);
     const EnsembleResult lanes = Ensemble(ensemble).threads(1).run(),

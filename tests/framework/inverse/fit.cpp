@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <random>
 #include <string>
@@ -188,6 +189,103 @@ TEST(Fit, WithTheLossOfHuberForgetsOutliers) {
   EXPECT_LT(std::abs(robust.parameters[0].value - 0.2), 0.005);
 }
 
+/// Of the equations of Lorenz in a file.
+hamel::Simulation lorenz() {
+  const char* root = std::getenv("HAMEL_SOURCE");
+  EXPECT_NE(root, nullptr) << "set HAMEL_SOURCE to the source tree (ctest does)";
+  return hamel::simulate(std::string(root == nullptr ? "." : root) +
+                         "/tools/studies/lorenz_system.toml")
+      .start({.velocity = {-8, 8, 27}})
+      .tolerance({.relative = 1e-11});
+}
+
+/// A displacement grows by e^4: over the whole recording from guesses that are off by 5 %
+/// there is no way to the numbers, over segments they come back without noise.
+TEST(Fit, OfAChaoticMotionTakesSegments) {
+  FitRequest request;
+  request.recordings.push_back(recorded(lorenz(), {"X", "Y", "Z"}, 0.1, 5));
+  request.names = {{"sigma", 10.5}, {"rho", 27}, {"beta", 2.8}, {"start.X", -8.4}};
+  request.iterations = 30;
+  const Fit fit = hamel::fit(lorenz(), request);
+  ASSERT_TRUE(fit) << fit.reason;
+  EXPECT_GT(fit.segments[0], 1);
+  const std::vector<double> truth = {10, 28, 8 / 3.0, -8};
+  for (size_t i = 0; i < truth.size(); ++i)
+    EXPECT_NEAR(fit.parameters[i].value, truth[i], 1e-10 * std::abs(truth[i]))
+        << request.names[i].name;
+  request.segments = 1;
+  request.iterations = 8;
+  const Fit single = hamel::fit(lorenz(), request);
+  EXPECT_FALSE(single && std::abs(single.parameters[1].value - 28) < 1e-3);
+}
+
+/// Segments change neither the numbers nor their deviations: a noisy recording of the sleigh.
+TEST(Fit, OfSegmentsIsThatOfOne) {
+  FitRequest request;
+  request.names = {{"offset", 0.25}, {"start.v1", 0.9}, {"start.omega"}};
+  request.sigma = {{"omega", 0.01}, {"v1", 0.01}};
+  request.recordings.push_back(recorded(sleigh(), {"omega", "v1"}, 0.05, 4));
+  std::mt19937 random(2);
+  std::normal_distribution<double> normal(0, 0.01);
+  for (auto& column : request.recordings[0].values)
+    for (double& x : column) x += normal(random);
+  const Fit one = hamel::fit(sleigh(), request);
+  ASSERT_TRUE(one) << one.reason;
+  EXPECT_EQ(one.segments, std::vector<int>{1});
+  request.segments = 5;
+  const Fit five = hamel::fit(sleigh(), request);
+  ASSERT_TRUE(five) << five.reason;
+  EXPECT_EQ(five.segments, std::vector<int>{5});
+  EXPECT_NEAR(five.chi2, one.chi2, 1e-8 * one.chi2);
+  EXPECT_EQ(five.dof, one.dof);
+  for (size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(five.parameters[i].value, one.parameters[i].value, 1e-8);
+    EXPECT_NEAR(five.parameters[i].sigma, one.parameters[i].sigma, 1e-7 * one.parameters[i].sigma);
+  }
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      EXPECT_NEAR(five.covariance(i, j), one.covariance(i, j), 1e-12) << i << j;
+}
+
+/// A sleigh whose lengths are numbers of a smaller unit, `per_metre` of it.
+hamel::Simulation sleigh_in(double per_metre) {
+  return hamel::simulate("chaplygin_sleigh")
+      .set("mass", 1)
+      .set("inertia", per_metre * per_metre)
+      .set("offset", 0.2 * per_metre)
+      .start({.velocity = {1, per_metre, 0}})
+      .tolerance({.relative = 1e-11});
+}
+
+/// Nothing depends on the unit of lengths: metres, millimetres, micrometres.
+TEST(Fit, OverSegmentsIsTheSameInEveryUnitOfLength) {
+  const auto fitted = [](double per_metre) {
+    FitRequest request;
+    request.names = {{"offset", 0.25 * per_metre}, {"start.v1", 0.9 * per_metre}, {"start.omega"}};
+    request.sigma = {{"omega", 0.01}, {"v1", 0.01 * per_metre}, {"x", 0.01 * per_metre}};
+    request.segments = 5;
+    request.recordings.push_back(recorded(sleigh_in(per_metre), {"omega", "v1", "x"}, 0.05, 4));
+    std::mt19937 random(2);
+    std::normal_distribution<double> normal(0, 0.01);
+    for (auto& column : request.recordings[0].values) {
+      const double unit = &column == &request.recordings[0].values[0] ? 1 : per_metre;
+      for (double& x : column) x += unit * normal(random);
+    }
+    return hamel::fit(sleigh_in(per_metre), request);
+  };
+  const Fit metres = fitted(1);
+  ASSERT_TRUE(metres) << metres.reason;
+  for (const double per_metre : {1e3, 1e6}) {
+    SCOPED_TRACE(per_metre);
+    const Fit fit = fitted(per_metre);
+    ASSERT_TRUE(fit) << fit.reason;
+    EXPECT_EQ(fit.iterations, metres.iterations);
+    EXPECT_NEAR(fit.chi2, metres.chi2, 1e-9 * metres.chi2);
+    EXPECT_NEAR(fit.parameters[0].value, per_metre * metres.parameters[0].value, 1e-9 * per_metre);
+    EXPECT_NEAR(fit.parameters[2].value, metres.parameters[2].value, 1e-9);
+  }
+}
+
 /// The fitted run repeats the fitted motion.
 TEST(Fit, GivesARun) {
   FitRequest request;
@@ -230,6 +328,15 @@ TEST(Fit, RefusesMistakes) {
               HasSubstr("leave no choice"));
   EXPECT_THAT(mistake({.names = {{"offset"}}, .recordings = {good}, .observe = {{"a", "x"}}}),
               HasSubstr("observe: unknown column of the data 'a'"));
+
+  EXPECT_THAT(mistake({.names = {{"offset"}}, .recordings = {good}, .segments = 4}),
+              HasSubstr("segments: got 4, expected a whole number from 1 to 3"));
+  try {  // a stop would end it before the data do
+    hamel::fit(sleigh().stop_at({"start"}), {.names = {{"offset"}}, .recordings = {good}});
+    ADD_FAILURE() << "a stop is refused";
+  } catch (const hamel::ConfigError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("leave stop_at out"));
+  }
 
   const auto text = [](const char* csv) -> std::string {
     try {

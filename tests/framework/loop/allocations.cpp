@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 
+#include <hamel/framework/contact/contact_problem.hpp>
 #include <hamel/framework/run/data/data_system.hpp>
 #include <hamel/framework/schemes/composition.hpp>
 #include <hamel/groups/product.hpp>
@@ -123,6 +124,44 @@ TEST_F(Allocations, NoneOnMechanisms) {
       Status status;
       EXPECT_EQ(counted(run, 20, status), 0) << system << " " << scheme;
       EXPECT_TRUE(status.ok) << system << " " << scheme << ": " << status.reason;
+    }
+  }
+}
+/// Contacts that all roll, with their reactions looked at in each step.
+TEST_F(Allocations, NoneWhereContactsRoll) {
+  for (const char* system : {"falling_disk", "rattleback", "chaplygin_sleigh"}) {
+    Simulation simulation = simulate(system);
+    simulation.set("friction", 50).tolerance({.relative = 1e-9}).step(1e-3);
+    hamel::Run run = simulation.build();
+    (void)run.step(5);
+    Status status;
+    EXPECT_EQ(counted(run, 20, status), 0) << system;
+    EXPECT_TRUE(status.ok) << system << ": " << status.reason;
+  }
+}
+/// The contact problem: one contact, several, several with given loads.
+TEST_F(Allocations, NoneInTheContactProblem) {
+  for (const bool normal : {true, false}) {
+    for (const int contacts : {1, 2, 4}) {
+      const int each = normal ? 3 : 2, m = each * contacts;
+      const Eigen::MatrixXd w = Eigen::MatrixXd::NullaryExpr(
+          m, m + 2, [](Eigen::Index i, Eigen::Index j) { return std::sin(2. * i + 3. * j * j); });
+      const Eigen::MatrixXd g = w * w.transpose();
+      const Eigen::VectorXd c =
+          Eigen::VectorXd::NullaryExpr(m, [&](Eigen::Index i) { return i % each == 0 ? -2. : 1.; });
+      std::vector<ContactBlock> blocks;
+      for (int i = 0; i < contacts; ++i)
+        blocks.push_back({.first = each * i,
+                          .normal = normal,
+                          .tangential = 2,
+                          .friction = 0.3,
+                          .bound = normal ? 0. : 0.2});
+      ContactProblem problem(m, contacts);
+      const long before = allocations;
+      const auto outcome = problem.solve(g, c, blocks);
+      EXPECT_EQ(allocations - before, 0) << contacts << " contacts, normal " << normal;
+      EXPECT_EQ(outcome, ContactProblem::Outcome::one);
+      EXPECT_LT(contact_residual(g, c, blocks, problem.p()), 1e-13);
     }
   }
 }

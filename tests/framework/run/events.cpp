@@ -1,5 +1,4 @@
-// Events: located where the motion is known in closed form, stopped at, changed at; output at given
-// times.
+// Events: located where the motion is known in closed form, stopped at, changed at.
 #include <unistd.h>
 
 #include <cmath>
@@ -259,36 +258,32 @@ TEST(RunByHand, KnowWhereTheyAre) {
   }
 }
 
-TEST(Output, IsAtTheTimesAskedForWithEveryScheme) {
-  const std::vector<double> times = {0, 0.013, 0.5, 0.9999, 1};
-  for (const std::string& scheme : registry().schemes()) {
-    if (scheme == "boxed_literal" || scheme == "unadapted" || scheme == "boxed") continue;
-    const auto run = [&](double h) {
-      return simulate("suslov")
-          .set("inertia", {2, 0.3, 0.5, 3, 0.4, 4})
-          .start({.velocity = {1, 0.5, 0}})
-          .scheme(scheme)
-          .step(h)
-          .until(1)
-          .output(times)
-          .run();
-    };
-    const Result coarse = run(0.03), fine = run(0.015);  // 0.03: the last node is at 0.99
-    ASSERT_TRUE(coarse);
-    EXPECT_EQ(coarse.trajectory.column("t"), times) << scheme;
-    const double order = std::log2(coarse.exact_error_max / fine.exact_error_max);
-    if (coarse.exact_error_max > 1e-11) {
-      EXPECT_GT(order, 1.7) << scheme << " " << coarse.exact_error_max;
-    }
-    EXPECT_LT(coarse.group_defect_max, 1e-14) << scheme;
-  }
+// Steps of 2 over an event of period 2 pi, which is above 0 for 0.62 of it.
+TEST(Events, TwoCrossingsWithinALongStep) {
+  Simulation run = simulate("nonholonomic_particle").scheme("dop853").step(2).until(20);
+  run.start({.configuration = {0, -5, 0}, .velocity = {0, 1, 0}});
+  const Result r = run.events({"1.05*cos(x2)=1"}).run();
+  ASSERT_TRUE(r.status.ok) << r.status.reason;
+  const double half = std::acos(1 / 1.05);
+  std::vector<double> found;
+  for (const EventMet& e : r.events) found.push_back(e.time);
+  ASSERT_GE(found.size(), 2U);
+  EXPECT_NEAR(found[0], 5 - half, 1e-10);
+  EXPECT_NEAR(found[1], 5 + half, 1e-10);
 }
 
-TEST(Output, LeavesTheStepsAlone) {
-  const auto run = [] { return simulate("rattleback").step(0.01).until(2); };
-  const Result plain = run().run(), dense = run().output(0.037).run();
-  EXPECT_EQ(plain.last.coordinates, dense.last.coordinates);
-  EXPECT_EQ(dense.trajectory.rows(), 55u);
+TEST(Events, WhatWasToStopTheRunAndDidNotIsNoted) {
+  using testing::Contains, testing::Not;
+  const auto run = [](std::vector<std::string> names, double until) {
+    return simulate("falling_disk").stop_at(std::move(names)).until(until).run();
+  };
+  EXPECT_THAT(run({"x=5"}, 0.5).notes,
+              Contains("stop_at: x=5 was not met before the end, t = 0.5"));
+  EXPECT_THAT(run({"x=5", "y=5"}, 0.5).notes,
+              Contains("stop_at: none of x=5, y=5 was met before the end, t = 0.5"));
+  const Result met = run({"x=0.1"}, 5);
+  EXPECT_TRUE(met.stopped_by_event);
+  EXPECT_THAT(met.notes, Not(Contains(HasSubstr("stop_at"))));
 }
 
 TEST(Mistakes, OfEventsAndOutputAreFoundBeforeTheRun) {
@@ -299,7 +294,7 @@ TEST(Mistakes, OfEventsAndOutputAreFoundBeforeTheRun) {
   };
   EXPECT_THAT(said(simulate("falling_disk").events({"falen"})), HasSubstr("did you mean 'fallen'"));
   EXPECT_THAT(said(simulate("falling_disk").stop_at({"q=1"})),
-              HasSubstr("events: 'q=1': unknown name 'q'"));
+              HasSubstr("stop_at: 'q=1': unknown name 'q'"));
   EXPECT_THAT(said(simulate("suslov").output({0, 30}).until(20)),
               HasSubstr("output_times: got 30"));
   EXPECT_THAT(said(simulate("suslov").output({0, 2, 1})), HasSubstr("beyond the one before"));
@@ -315,6 +310,31 @@ TEST(Mistakes, OfEventsAndOutputAreFoundBeforeTheRun) {
               HasSubstr("steps of one size"));
   EXPECT_THAT(said(simulate("falling_disk").scheme("lift").s(0).tolerance({.relative = 1e-6})),
               HasSubstr("s = 0.5"));
+}
+
+// y = cos t beyond -cos(half) for 2 half about each pi (2 k + 1): less than a step of dop853, of
+// which a run has some 0.4 s, so that the event has the same sign at nodes about it.
+TEST(Events, TwoCrossingsWithinAStepAreFound) {
+  for (const double half : {0.1, 0.03, 0.01}) {
+    const std::string event = "x2=-cos(" + std::to_string(half) + ")";
+    const auto found = [&](const std::string& scheme, double until) {
+      Simulation run = simulate("nonholonomic_particle").scheme(scheme).events({event});
+      run.set("spring", {1}).start({.configuration = {0, 1, 0}, .velocity = {0, 0, 0}});
+      return run.tolerance({.relative = 1e-9}).until(until).run();
+    };
+    for (const std::string scheme : {"dopri5", "tsit5", "dop853"}) {
+      for (const double until : {200.0, -200.0}) {
+        const Result r = found(scheme, until);
+        ASSERT_TRUE(r) << r.status.reason;
+        ASSERT_EQ(r.events.size(), 64u) << scheme << half;  // at pi, 3 pi, ..., 63 pi
+        for (int k = 0; k < 64; ++k) {
+          const double middle = M_PI * (2 * (k / 2) + 1);
+          const double exact = k % 2 == 0 ? middle - half : middle + half;
+          EXPECT_NEAR(std::abs(r.events[static_cast<size_t>(k)].time), exact, 2e-5);
+        }
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 
 #include <hamel/hamel.hpp>
 
-#include <hamel/framework/run/run/reactions.hpp>
+#include <hamel/framework/run/run/rows/reactions.hpp>
 
 namespace {
 

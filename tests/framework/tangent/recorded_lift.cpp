@@ -80,7 +80,7 @@ class RecordedLiftOf : public testing::TestWithParam<std::tuple<Case, std::strin
     map_ = std::make_unique<StepMap>(
         std::shared_ptr<const RunPlan>(std::shared_ptr<void>(), &run_.driver().plan()),
         all_inputs());
-    equation_ = RecordedLift::of(map_->plan());
+    equation_ = RecordedLift::of(map_->plan(), RecordedLift::Order::second);
     state_ = map_->start();
     if (std::get<0>(GetParam()).name != "disk") {
       for (Eigen::Index i = 0; i < state_.xi.size(); ++i)
@@ -214,7 +214,7 @@ void expect_derivatives_of(const Simulation& simulation, const std::string& name
   SCOPED_TRACE(name);
   hamel::Run run = simulation.build();
   StepMap map(std::shared_ptr<const RunPlan>(std::shared_ptr<void>(), &run.driver().plan()));
-  const auto equation = RecordedLift::of(map.plan());
+  const auto equation = RecordedLift::of(map.plan(), RecordedLift::Order::first);
   ASSERT_NE(equation, nullptr);
   const auto& inputs = map.plan().setup.inputs;
   const Eigen::VectorXd u = inputs == nullptr ? InputValues() : inputs->at(0);
@@ -266,7 +266,8 @@ TEST(RecordedLift, IsExactOfEveryRegisteredSystemThatHasFormulas) {
   std::vector<std::string> without;
   for (const std::string& name : registry().systems()) {
     const hamel::Run run = step_of(name).build();
-    if (RecordedLift::of(run.driver().plan()) == nullptr) without.push_back(name);
+    if (RecordedLift::of(run.driver().plan(), RecordedLift::Order::first) == nullptr)
+      without.push_back(name);
     else expect_derivatives_of(step_of(name), name);
   }
   EXPECT_THAT(without, testing::UnorderedElementsAre("n_trailer", "roller_racer", "snakeboard"));

@@ -28,6 +28,7 @@ TURN = " ".join(f"--input {wheel}_axle.torque={torque}" for wheel, torque in
                 (("front_left", -6), ("rear_left", -6), ("front_right", 6), ("rear_right", 6)))
 EXAMPLES = {
     "braked_car": ("tests/examples/braked_car.toml", "--slip --until 5", "--strobe 6"),
+    "rolling_car": ("tests/examples/rolling_car.toml", "--slip --until 5", "--strobe 6"),
     "cart_with_brake": ("tests/examples/cart_with_brake.toml", "--slip --until 6 --input rear.brake=tests/examples/cart_with_brake.csv", ""),
     "skate_that_slips": ("tests/examples/skate_that_slips.toml", "--slip --until 2", "--strobe 6"),
     "skid_steered_planar": (f"{ROBOT} planar", f"{TURN} --until 4", ""),
@@ -37,6 +38,7 @@ EXAMPLES = {
     "ball_on_shaken_table": ("tests/examples/ball_on_shaken_table.toml", "--slip --until 2", ""),
     "billiard_ball": ("--config tests/examples/billiard_ball.toml", "", "--strobe 6"),
     "rimless_wheel": ("tests/examples/rimless_wheel.toml", "--until 10", "--strobe 4 --at 2"),
+    "woodpecker_toy": ("tests/examples/woodpecker_toy.toml", "--slip --until 1 --output-step 0.002", ""),
     "spun_coin": ("--config tests/examples/spun_coin.toml", "", ""),
     "thrown_box": ("tests/examples/thrown_box.toml", "--slip --until 0.6", "--strobe 6"),
 }
@@ -75,7 +77,7 @@ def picture(program, root, folder, entry):
     recorded, drawn = folder / f"{entry.name}.h5", folder / f"{entry.name}.png"
     if drawn.exists():
         return drawn
-    rows = [] if entry.is_configuration else ["--output-step", "0.02"]
+    rows = [] if entry.is_configuration or "--output-step" in entry.run else ["--output-step", "0.02"]
     hamel(program, "run", *entry.system, *entry.run, *rows, "-o", str(recorded), "--quiet", root=root)
     several = [["--motion", *entry.times, "--size", "720x440"]] if entry.times else []
     for figure in [*several, *(["--figure", figure, "--width", "9cm"] for figure in ("motion", "path", "axes"))]:

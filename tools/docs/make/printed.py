@@ -1,8 +1,10 @@
-"""Generated pages: the help of every command, the keys of the files (from the schemas), the Python package (from stubs and docstrings)."""
+"""Generated pages: the help of every command, the keys of the files (from the schemas), the Python package (from stubs and docstrings), the errors."""
 import inspect
 import json
 import re
 import subprocess
+
+import errors
 
 
 def fenced(text):
@@ -63,6 +65,26 @@ def files(build):
         parts += [f"## Keys of {name}.json\n", schema.get("title", "") + ".\n", "| key | value | meaning |", "|---|---|---|",
                   *rows(schema), ""]
     return "\n".join(parts)
+
+
+def robots(root, build):
+    """What a name may add to a robot in URDF, as the command line states it: the same names, or an error."""
+    program = str(build / "tools/hamel")
+    text = subprocess.run([program, "help", "run"], capture_output=True, text=True, check=True).stdout
+    group = re.search(r"^Robot:\n(.*?)\n\n", text, re.M | re.S)[1]
+    options = [" ".join(one.split()) for one in re.split(r"^  (?=--)", group, flags=re.M) if one.strip()]
+    rows = dict(re.match(r"--(\S+) (.*)", one).groups() for one in options)
+    wrong = subprocess.run([program, "describe", f"{root}/tests/examples/diff_drive.urdf?no_such=1"], capture_output=True, text=True).stderr
+    known = sorted(re.findall(r"[a-z-]+", wrong.rsplit("one of", 1)[1].splitlines()[0]))
+    missing = sorted(set(known) - rows.keys())
+    if not known or missing:
+        raise ValueError(f"hamel help run lacks options of a robot: {missing or wrong}")
+    out = ["## Options of robot.urdf\n", "What a file in URDF leaves open: `--option value` beside its name, or "
+           "`robot.urdf?option=value&option=value` in any name of a system.\n", "| option | in a name | value | meaning |", "|---|---|---|---|"]
+    for name in known:
+        value, meaning = re.match(r"(.*?)(?: \.\.\.)? +(an? .*|all .*|how .*)", rows[name]).groups()
+        out.append(f"| `--{name}` | `?{name}=` | {'text' if value == 'TEXT' else f'`{value}`'} | {meaning.replace('|', chr(92) + '|').replace('<', '&lt;')} |")
+    return "\n".join([*out, ""])
 
 
 def rst(text):
@@ -133,4 +155,4 @@ def python():
 
 
 def texts(root, build):
-    return {"commands.txt": commands(build), "files.txt": files(build), "python.txt": python()}
+    return {"commands.txt": commands(build), "files.txt": files(build) + robots(root, build), "python.txt": python(), "errors.txt": errors.page(root)}

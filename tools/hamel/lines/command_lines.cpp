@@ -6,6 +6,7 @@
 
 #include "commands.hpp"
 #include "fit.hpp"
+#include "lines/help.hpp"
 #include "lines/number_option.hpp"
 #include "lines/page_lines.hpp"
 #include "lines/run_line.hpp"
@@ -32,6 +33,7 @@ void add_parts(CLI::App& app, PartOptions& options, const std::string& file,
       ->excludes(merge);
   app.add_flag("--json", options.json, "print the record as JSON");
   app.add_flag("--quiet", options.quiet, "print nothing but errors (and --json)");
+  add_verbose(app, options.verbose);
 }
 
 Action define_list(CLI::App& app) {
@@ -66,6 +68,7 @@ Action define_describe(CLI::App& app) {
                    "print the file of a mechanism, of a robot in URDF too, for further changes");
   as_toml->excludes(as_equations);
   app.add_flag("--json", line->options.json, "as JSON")->excludes(as_toml)->excludes(as_equations);
+  add_verbose(app, line->options.verbose);
   app.footer(
       "Examples:\n  hamel describe suslov\n  hamel describe 'se2*so2'\n  hamel describe cayley "
       "--json\n  hamel describe --analyse chaplygin_sleigh --set offset=0\n"
@@ -149,6 +152,7 @@ Action define_steady(CLI::App& app) {
                "with --vary: follow the branches that meet it, too");
   app.add_option("--report", options.report, "write a self-contained HTML page, with --vary");
   app.add_flag("--json", options.json, "as JSON; without --vary with the linearisation: A, B, C");
+  add_verbose(app, options.verbose);
   number_option(app, "--sample-time", options.sample_time,
                 "with --json: the discrete pair for inputs held so long, in s");
   app.footer(
@@ -187,6 +191,7 @@ Action define_plan(CLI::App& app) {
                  "write the gains of a linear feedback along the plan as a table, .csv");
   app.add_flag("--json", options->json, "print everything as JSON");
   app.add_flag("--quiet", options->quiet, "print nothing but errors (and --json)");
+  add_verbose(app, options->verbose);
   app.footer(
       "Exit status: 0 done, 1 out of reach (the plan that misses the goal least is written) or "
       "failed, 2 bad input.\n"

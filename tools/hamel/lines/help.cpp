@@ -56,6 +56,10 @@ std::vector<std::string> wrapped(const std::string& text, size_t width) {
   return out;
 }
 
+void add_verbose(CLI::App& app, bool& verbose) {
+  app.add_flag("--verbose", verbose, "print notes in full");
+}
+
 void set_help(CLI::App& app) {
   const auto help = std::make_shared<Help>();
   app.formatter(help);

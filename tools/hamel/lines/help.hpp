@@ -12,6 +12,9 @@ namespace hamel::tools {
 /// whole.
 std::vector<std::string> wrapped(const std::string& text, size_t width);
 
+/// --verbose, of a command that prints notes.
+void add_verbose(CLI::App& app, bool& verbose);
+
 /// For an app and its subcommands.
 void set_help(CLI::App& app);
 

@@ -23,8 +23,8 @@ void RobotLine::define(CLI::App& app) {
   };
   list("--wheel", wheels, "LINK[:kind][,radius=r]",
        "a link of robot.urdf that rolls on the ground, with the radius of its cylinder or sphere, "
-       "or this one (m); kind: wheel, ball, omni, mecanum; auto: the links that look like wheels "
-       "(repeatable)");
+       "or this one (m); kind: wheel, ball, omni, mecanum, with angle=a (rad) of its rollers; "
+       "friction=mu: it slides too; auto: the links that look like wheels (repeatable)");
   list(
       "--motor", motors, "JOINT",
       "a joint with a motor [the wheels' joints, and those with a transmission or an effort limit] "

@@ -75,7 +75,7 @@ void RunLine::define_run(CLI::App& app, const std::set<std::string>& without) {
 
 void RunLine::define(CLI::App& app) {
   define_run(app, {});
-  for (const char* name : {"output", "report", "json", "quiet"}) own[name];
+  for (const char* name : {"output", "report", "json", "quiet", "verbose"}) own[name];
   for (const std::string& name : RobotLine::keys()) own[name];
   app.add_option(
          "--continue", record_file,
@@ -89,6 +89,7 @@ void RunLine::define(CLI::App& app) {
   app.add_option("--report", options.report, "write a self-contained HTML page");
   app.add_flag("--json", options.json, "print the record as JSON");
   app.add_flag("--quiet", options.quiet, "print nothing but errors (and --json)");
+  add_verbose(app, options.verbose);
   group_options(app, "Motion",
                 {"--config", "--continue", "--set", "--input", "--configuration", "--velocity",
                  "--momentum", "--speed", "--start", "--from", "--until"});
@@ -97,9 +98,9 @@ void RunLine::define(CLI::App& app) {
       {"--scheme", "--retraction", "--s", "--step", "--rtol", "--atol", "--step-max", "--steps-max",
        "--solver", "--tolerance", "--force-at", "--compose", "--force", "--on-failure"});
   group_options(app, "Events and checks", {"--events", "--stop-at", "--check", "--no-exact"});
-  group_options(
-      app, "Output",
-      {"--output", "--every", "--output-step", "--output-times", "--report", "--json", "--quiet"});
+  group_options(app, "Output",
+                {"--output", "--every", "--output-step", "--output-times", "--report", "--json",
+                 "--quiet", "--verbose"});
   app.footer(
       "Exit status: 0 done, 1 numerical failure (what was computed is written), or interrupted "
       "or disk\n"
@@ -132,6 +133,7 @@ RunOptions RunLine::resolve(const CLI::App& app) {
     take(app, "report", options.report);
     take(app, "json", options.json);
     take(app, "quiet", options.quiet);
+    take(app, "verbose", options.verbose);
     take(app, "wheel", robot.wheels);
     take(app, "motor", robot.motors);
     take(app, "weld", robot.welds);

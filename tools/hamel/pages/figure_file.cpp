@@ -12,11 +12,13 @@
 
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/io/output_file.hpp>
+#include <hamel/framework/pages/page.hpp>
 
 #include "pages/browser.hpp"
-#include "pages/run_page.hpp"
 
 namespace hamel::tools {
+
+using pages::page_mistakes;
 namespace {
 
 constexpr double kInch = 96;              // pixels of a style sheet

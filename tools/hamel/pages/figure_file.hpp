@@ -4,9 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "pages/page.hpp"
+#include <hamel/framework/pages/page.hpp>
 
 namespace hamel::tools {
+
+using pages::Page;
 
 /// "8cm", also mm, in, pt, px -> pixels of the page, 96 to the inch; NaN where it is no width.
 double width_in_pixels(const std::string& text);

@@ -16,15 +16,19 @@
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/io/output_file.hpp>
 #include <hamel/framework/mechanics/system_model.hpp>
+#include <hamel/framework/pages/page.hpp>
 #include <hamel/systems/by_name.hpp>
 
 #include "pages/browser.hpp"
 #include "pages/figure_file.hpp"
-#include "pages/page.hpp"
 #include "pages/programs.hpp"
-#include "pages/run_page.hpp"
 
 namespace hamel::tools {
+
+using pages::Figure;
+using pages::Page;
+using pages::page_mistakes;
+using pages::PictureOptions;
 namespace {
 
 constexpr int kLeastSize = 64, kMostSize = 4096, kMostStrobe = 100, kMostFrames = 20000;

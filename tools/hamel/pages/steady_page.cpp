@@ -44,7 +44,7 @@ std::string modes_text(const std::vector<ModePart>& parts) {
 
 namespace {
 
-std::string text_of(Bifurcation kind) {
+std::string words_of(Bifurcation kind) {
   switch (kind) {
     case Bifurcation::pitchfork: return "another branch crosses this one (pitchfork)";
     case Bifurcation::transcritical: return "another branch crosses this one (transcritical)";
@@ -70,7 +70,7 @@ std::string text_of_end(Bifurcation kind) {
 }
 
 std::string kind_text(const SteadyCrossing& crossing) {
-  const std::string out = text_of(crossing.kind);
+  const std::string out = words_of(crossing.kind);
   if (!crossing.supercritical) return out;
   return out + (*crossing.supercritical ? ", supercritical" : ", subcritical");
 }

@@ -6,10 +6,12 @@
 
 #include <hamel/framework/analysis/steady.hpp>
 #include <hamel/framework/mechanics/system_model.hpp>
-
-#include "pages/page.hpp"
+#include <hamel/framework/pages/page.hpp>
 
 namespace hamel::tools {
+
+using pages::Cell;
+using pages::Page;
 
 /// A number with the decimals that are known of it.
 std::string known_text(double x, double round_off);

@@ -4,12 +4,15 @@
 #include <string>
 #include <vector>
 
+#include <hamel/framework/pages/page.hpp>
 #include <hamel/framework/run/record/measures.hpp>
 #include <hamel/framework/study/study.hpp>
 
-#include "pages/page.hpp"
-
 namespace hamel::tools {
+
+using pages::Cell;
+using pages::Figure;
+using pages::Page;
 
 /// A study of tools/studies/paper by its stem, as the program carries it; its cells are the
 /// variants of the paper's method.

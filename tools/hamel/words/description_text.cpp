@@ -2,6 +2,7 @@
 #include "words/description_text.hpp"
 
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -49,8 +50,11 @@ void print_value(const std::string& key, const nlohmann::ordered_json& value) {
 
 }  // namespace
 
-void print_description(const nlohmann::ordered_json& description) {
-  for (const auto& [key, value] : description.items()) print_value(key, value);
+void print_description(const nlohmann::ordered_json& description, Notes length) {
+  for (const auto& [key, value] : description.items()) {
+    if (key != "notes") print_value(key, value);
+    else say("{}", note_lines(value.get<std::vector<std::string>>(), 15, length));
+  }
 }
 
 }  // namespace hamel::tools

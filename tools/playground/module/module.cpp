@@ -1,21 +1,20 @@
 // The library for a page, as functions of C: texts of JSON in and out, numbers as addresses.
+#include <emscripten.h>
 #include <cmath>
 #include <string>
 #include <utility>
 #include <variant>
 #include <vector>
 
-#include <emscripten.h>
-
 #include <hamel/framework/figures/figures.hpp>
 #include <hamel/framework/figures/json.hpp>
 #include <hamel/framework/io/version.hpp>
 #include <hamel/framework/mechanics/system_model.hpp>
+#include <hamel/framework/pages/run_verdict.hpp>
 #include <hamel/systems/by_name.hpp>
 
 #include "description.hpp"
 #include "request.hpp"
-#include "words/run_verdict.hpp"
 
 namespace hamel::playground {
 namespace {
@@ -68,7 +67,7 @@ Json run(const Json& request) {
   Config::fields([&](const Option& option, auto) {  // as it was run
     out["options"][option.name] = result.config.text(option.name);
   });
-  const tools::RunVerdict verdict = tools::run_verdict(result);
+  const pages::RunVerdict verdict = pages::run_verdict(result);
   out["verdict"] = {{"kind", "verdict"}, {"status", verdict.status}, {"text", verdict.text}};
   for (size_t i = 0; i < drawn.size(); ++i) {
     if (!std::holds_alternative<figures::Animation>(drawn[i].drawing)) continue;

@@ -75,7 +75,7 @@ struct SystemText {
   std::string toml, name;
 };
 /// The text of a system that is given as one, or as a SystemText; empty for a name or a file, which
-/// are then its name. ConfigError for a Mechanism, whose functions no file has.
+/// are then its name.
 SystemText system_text(const std::string& key, nb::handle system);
 /// Description of the system of a run that could start.
 ModelDescription described(const Simulation& simulation);
@@ -130,9 +130,10 @@ class StoredResult {
   using Places = std::map<std::string, std::pair<size_t, size_t>>;  // first column, number of them
 
   Result result;
-  std::string source;          // as in Builder
-  std::string record, report;  // of one that was pickled, whose result.system is null
-  Functions functions;         // of its system
+  std::string source;  // as in Builder
+  // Texts of a pickled result, whose result.system is null; the last has notes in full.
+  std::string record, report, verbose_report;
+  Functions functions;  // of its system
 
   StoredResult(Result of, std::string text, Functions called = {})
       : result(std::move(of)), source(std::move(text)), functions(std::move(called)) {}
@@ -140,6 +141,7 @@ class StoredResult {
   /// for.
   const Places& places() const;
   std::string record_text() const;
+  std::string report_text(Notes length) const;
   void write(const std::string& path);
   /// Makes the system of a result that was pickled again, from its name or text.
   void restore_system();

@@ -47,28 +47,43 @@ std::function<double(Run&)> kept_by(const Function& function) {
   };
 }
 
-// A file, its text, or a dict of the same keys; its system may be a text or a SystemText.
-EnsembleConfig config_of(nb::handle file) {
-  if (!nb::isinstance<nb::dict>(file)) {
+// A file, its text, or a dict of the same keys; its system may be a text, a SystemText or a
+// Mechanism. A Mechanism alone has its keys as options.
+EnsembleConfig config_of(nb::handle file, const nb::kwargs& options) {
+  nb::dict table;
+  if (nb::isinstance<nb::dict>(file)) {
+    table = nb::steal<nb::dict>(PyDict_Copy(file.ptr()));
+  } else if (nb::isinstance<ByParts>(file)) {
+    table["system"] = nb::borrow(file);
+  } else {
+    if (options.size() > 0)
+      throw ConfigError(
+          {"ensemble: keys beside a file: expected them in it, or a dict or a "
+           "Mechanism in its place"});
     const std::string given = text("file", file);
     return given.find('\n') == std::string::npos
                ? read_ensemble(given, registry())
                : parse_ensemble(given, "ensemble.toml", registry());
   }
-  nb::dict table = nb::steal<nb::dict>(PyDict_Copy(file.ptr()));
+  for (const auto& [key, value] : options) table[key] = value;
   SystemText system;
-  if (table.contains("system")) {
+  std::function<SystemModel(const Parameters&)> model;
+  if (table.contains("system") && nb::isinstance<ByParts>(table["system"])) {
+    const auto& parts = nb::cast<const ByParts&>(table["system"]);
+    model = maker(parts);
+    table["system"] = parts.name();
+  } else if (table.contains("system")) {
     system = system_text("system", table["system"]);
     if (!system.toml.empty()) table["system"] = system.name;
   }
   return parse_ensemble(nb::cast<std::string>(helper("_toml", "dumps")(table)), "ensemble",
-                        registry(), system.toml);
+                        registry(), system.toml, std::move(model));
 }
 
 EnsembleResult ensemble(nb::handle file, int threads, nb::handle folder, nb::handle shard,
                         bool merge, bool fresh, nb::object progress, const nb::dict& vary_by,
-                        const nb::dict& keep_by) {
-  EnsembleConfig config = config_of(file);
+                        const nb::dict& keep_by, const nb::kwargs& options) {
+  EnsembleConfig config = config_of(file, options);
   Functions functions;
   for (const auto& [name, function] : vary_by)
     config.vary_by(nb::cast<std::string>(name), varied_by(functions.add(function)));
@@ -121,6 +136,14 @@ void bind_ensemble(nb::module_& m) {
           "folder"_a, nb::sig("def write(self, folder: str | os.PathLike[str]) -> None"),
           "ensemble.h5 (where the build has HDF5), ensemble.csv and ensemble.json.")
       .def(
+          "write_page",
+          [](const EnsembleResult& r, nb::handle path) {
+            write_page(registry(), r, text("path", path));
+          },
+          "path"_a, nb::sig("def write_page(self, path: str | os.PathLike[str]) -> None"),
+          "The page of hamel ensemble, one HTML file that a browser opens from disk. A member of "
+          "each class is run again, for its motion.")
+      .def(
           "to_pandas", [](nb::handle self) { return helper("_frames", "table_to_pandas")(self); },
           nb::sig("def to_pandas(self) -> pandas.DataFrame"), "A row for each member.")
       .def("__repr__", [](const EnsembleResult& r) {
@@ -133,16 +156,19 @@ void bind_ensemble(nb::module_& m) {
   m.def(
       "ensemble", &ensemble, "file"_a, nb::kw_only(), "threads"_a = 0, "folder"_a = nb::none(),
       "shard"_a = nb::none(), "merge"_a = false, "fresh"_a = false, "progress"_a = nb::none(),
-      "vary_by"_a = nb::dict(), "keep_by"_a = nb::dict(),
-      nb::sig(
-          "def ensemble(file: str | os.PathLike[str] | dict[str, typing.Any], *, threads: int = 0, "
-          "folder: str | "
-          "os.PathLike[str] | None = None, shard: tuple[int, int] | None = None, merge: bool "
-          "= False, fresh: bool = False, progress: collections.abc.Callable[[float], object] "
-          "| bool | None = None, vary_by: dict[str, collections.abc.Callable[[int], float]] = "
-          "{}, keep_by: dict[str, collections.abc.Callable[[State], float]] = {}) -> "
-          "EnsembleResult"),
-      "The members of an ensemble's file (or of its text), as `hamel ensemble` runs them. threads: "
+      "vary_by"_a = nb::dict(), "keep_by"_a = nb::dict(), "options"_a,
+      nb::keep_alive<0, 1>(),  // a page runs members again: with the functions of a Mechanism
+      nb::sig("def ensemble(file: str | os.PathLike[str] | dict[str, typing.Any] | Mechanism, *, "
+              "threads: int = 0, "
+              "folder: str | "
+              "os.PathLike[str] | None = None, shard: tuple[int, int] | None = None, merge: bool "
+              "= False, fresh: bool = False, progress: collections.abc.Callable[[float], object] "
+              "| bool | None = None, vary_by: dict[str, collections.abc.Callable[[int], float]] = "
+              "{}, keep_by: dict[str, collections.abc.Callable[[State], float]] = {}, **options: "
+              "typing.Any) -> EnsembleResult"),
+      "The members of an ensemble's file (or of its text), as `hamel ensemble` runs them; or of a "
+      "dict of its keys, whose system may be a Mechanism; or of a Mechanism with them as options: "
+      "until, vary, keep, members, …. A journal cannot have a Mechanism: no folder. threads: "
       "0 is all cores. folder: keeps a journal there and resumes from it. shard=(i, n): the part "
       "i of n, from 1; merge=True joins the parts in the folder. vary_by: names to vary, each by a "
       "function of the member's index; keep_by: further numbers, each a function of the member's "

@@ -89,13 +89,15 @@ std::vector<FitName> fit_names_of(nb::handle names) {
 
 Fit fit_by_python(nb::handle system, nb::handle data, nb::handle names,
                   std::map<std::string, double> sigma, std::map<std::string, std::string> observe,
-                  std::optional<double> huber, const nb::kwargs& options) {
+                  std::optional<double> huber, std::optional<int> segments,
+                  const nb::kwargs& options) {
   Builder builder = builder_of(system, options);
   const FitRequest request{.names = fit_names_of(names),
                            .recordings = recordings_of(data),
                            .sigma = std::move(sigma),
                            .observe = std::move(observe),
-                           .huber = huber};
+                           .huber = huber,
+                           .segments = segments};
   return long_call(nb::none(), [&](std::atomic<bool>& stop, const std::function<void(double)>&) {
     return hamel::fit(builder.simulation, request, {}, &stop);
   });
@@ -137,6 +139,7 @@ void bind_fit(nb::module_& m) {
       .def_ro("sigma", &Fit::sigma, "of the columns, as given or estimated")
       .def_ro("undetermined", &Fit::undetermined,
               "directions that the data do not see, as relative changes")
+      .def_ro("segments", &Fit::segments, "of each recording")
       .def_ro("iterations", &Fit::iterations)
       .def_ro("runs", &Fit::runs)
       .def_ro("notes", &Fit::notes)
@@ -186,16 +189,21 @@ void bind_fit(nb::module_& m) {
           nb::sig("def by(self) -> numpy.typing.NDArray[numpy.float64]"))
       .def_ro("errors", &Gradient::errors)
       .def_ro("status", &Gradient::status);
-  m.def("fit", &fit_by_python, "system"_a, "data"_a, "names"_a, nb::kw_only(),
-        "sigma"_a = std::map<std::string, double>(),
-        "observe"_a = std::map<std::string, std::string>(), "huber"_a = nb::none(), "options"_a,
-        nb::sig("def fit(system: _System, data: typing.Any, names: str | "
-                "collections.abc.Sequence[str] | dict[str, typing.Any], *, sigma: dict[str, float] "
-                "= {}, observe: dict[str, str] = {}, huber: float | None = None, **options: "
-                "typing.Any) -> Fit"),
-        "Fits parameters, starts ('start.omega') and constant inputs to recordings. data: a CSV "
-        "file, or a mapping of columns with t, or a list of such; names: 'offset=0.2:0:1', a list, "
-        "or a dict of guesses or (guess, low, high).");
+  m.def(
+      "fit", &fit_by_python, "system"_a, "data"_a, "names"_a, nb::kw_only(),
+      "sigma"_a = std::map<std::string, double>(),
+      "observe"_a = std::map<std::string, std::string>(), "huber"_a = nb::none(),
+      "segments"_a = nb::none(), "options"_a,
+      nb::sig(
+          "def fit(system: _System, data: typing.Any, names: str | "
+          "collections.abc.Sequence[str] | dict[str, typing.Any], *, sigma: dict[str, float] "
+          "= {}, observe: dict[str, str] = {}, huber: float | None = None, segments: int | None = "
+          "None, **options: typing.Any) -> Fit"),
+      "Fits parameters, starts ('start.omega') and constant inputs to recordings. data: a CSV "
+      "file, or a mapping of columns with t, or a list of such; names: 'offset=0.2:0:1', a list, "
+      "or a dict of guesses or (guess, low, high); segments: of each recording, "
+      "whose first states are unknowns too (multiple shooting), by how fast a displacement grows "
+      "where it is not given.");
   m.def(
       "sensitivities",
       [](nb::handle system, const std::vector<std::string>& names, const nb::kwargs& options) {

@@ -81,7 +81,8 @@ nb::dict pack(const StoredResult& stored) {
   const Result& result = stored.result;
   nb::dict out;
   out["record"] = stored.record_text();
-  out["report"] = result.system == nullptr ? stored.report : result.report();
+  out["report"] = stored.report_text(Notes::brief);
+  out["verbose_report"] = stored.report_text(Notes::whole);
   out["source"] = stored.source;
   out["config"] = result.config;
   const Status& status = result.status;
@@ -175,6 +176,7 @@ StoredResult read(const nb::dict& state) {
   StoredResult out(std::move(result), get<std::string>(state, "source"));
   out.record = get<std::string>(state, "record");
   out.report = get<std::string>(state, "report");
+  out.verbose_report = get<std::string>(state, "verbose_report");
   return out;
 }
 

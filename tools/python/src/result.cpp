@@ -143,6 +143,11 @@ const StoredResult::Places& StoredResult::places() const {
   return places_;
 }
 
+std::string StoredResult::report_text(Notes length) const {
+  if (result.system != nullptr) return result.report(length);
+  return length == Notes::brief ? report : verbose_report;
+}
+
 std::string StoredResult::record_text() const {
   return result.system == nullptr ? record : result.record();
 }
@@ -238,14 +243,21 @@ void bind_result(nb::module_& m) {
       .def("json", &StoredResult::record_text, "The record as text.")
       .def(
           "report",
-          [](const StoredResult& s) {
-            return s.result.system == nullptr ? s.report : s.result.report();
-          },
-          "One screen of text.")
+          [](const StoredResult& s, bool verbose) { return s.report_text(Notes{verbose}); },
+          "verbose"_a = false,
+          "One screen of text; a note is cut to a line unless it is verbose (notes has them all).")
       .def(
           "write", [](StoredResult& s, nb::handle path) { s.write(text("path", path)); }, "path"_a,
           nb::sig("def write(self, path: str | os.PathLike[str]) -> None"),
           "By extension: .csv, .csv.gz, .h5 or .json. The file appears whole or not at all.")
+      .def(
+          "write_page",
+          [](StoredResult& s, nb::handle path) {
+            s.restore_system();
+            write_page(registry(), s.result, text("path", path));
+          },
+          "path"_a, nb::sig("def write_page(self, path: str | os.PathLike[str]) -> None"),
+          "The page of hamel run --report, one HTML file that a browser opens from disk.")
       .def(
           "to_pandas", [](nb::handle self) { return helper("_frames", "to_pandas")(self); },
           nb::sig("def to_pandas(self) -> pandas.DataFrame"),
@@ -262,10 +274,7 @@ void bind_result(nb::module_& m) {
           "height"_a = 320, nb::sig("def animation(self, height: int = 320) -> _Animation"),
           "The drawing of the system in motion, which a notebook shows; height in pixels. "
           "ValueError where the system has no drawing, or the rows are in files.")
-      .def("__str__",
-           [](const StoredResult& s) {
-             return s.result.system == nullptr ? s.report : s.result.report();
-           })
+      .def("__str__", [](const StoredResult& s) { return s.report_text(Notes::brief); })
       .def("__repr__",
            [](const StoredResult& s) {
              return "<hamel.Result of " + s.result.config.system + ": " +

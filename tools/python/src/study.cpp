@@ -12,6 +12,12 @@ std::string word_of(nb::handle value) {
 StudySystem system_of(nb::handle given) {
   StudySystem out;
   const auto take = [&out](nb::handle system) {
+    if (nb::isinstance<ByParts>(system)) {
+      const auto& parts = nb::cast<const ByParts&>(system);
+      out.name = parts.name();
+      out.model = maker(parts);
+      return;
+    }
     SystemText read = system_text("system", system);
     out.name = std::move(read.name);
     out.data = std::move(read.toml);
@@ -55,6 +61,8 @@ StudyConfig study_of(nb::handle file, const nb::dict& options) {
   StudyConfig config;
   if (nb::isinstance<nb::dict>(file)) {
     config = study_of(nb::none(), nb::borrow<nb::dict>(file));
+  } else if (nb::isinstance<ByParts>(file)) {
+    config.systems.push_back(system_of(file));
   } else if (!file.is_none()) {
     const std::string given = text("file", file);
     config = given.find('\n') == std::string::npos ? read_study(given, registry())
@@ -129,6 +137,11 @@ void bind_study(nb::module_& m) {
           "folder"_a, nb::sig("def write(self, folder: str | os.PathLike[str]) -> None"),
           "cells.csv, record.json and, where the build has HDF5, cells.h5.")
       .def(
+          "write_page",
+          [](const StudyResult& r, nb::handle path) { write_page(r, text("path", path)); },
+          "path"_a, nb::sig("def write_page(self, path: str | os.PathLike[str]) -> None"),
+          "The page of hamel study, one HTML file that a browser opens from disk.")
+      .def(
           "to_pandas", [](nb::handle self) { return helper("_frames", "table_to_pandas")(self); },
           nb::sig("def to_pandas(self) -> pandas.DataFrame"), "A row for each cell.")
       .def("__repr__", [](const StudyResult& r) {
@@ -140,19 +153,19 @@ void bind_study(nb::module_& m) {
                [](const StudyResult& r) { return figures::of_study(r); });
   m.def("study", &study, "file"_a = nb::none(), nb::kw_only(), "threads"_a = 0,
         "folder"_a = nb::none(), "fresh"_a = false, "progress"_a = nb::none(), "options"_a,
-        nb::sig("def study(file: str | os.PathLike[str] | dict[str, typing.Any] | None = None, *, "
+        nb::sig("def study(file: str | os.PathLike[str] | dict[str, typing.Any] | Mechanism | None "
+                "= None, *, "
                 "threads: int = 0, folder: "
                 "str | os.PathLike[str] | None = None, fresh: bool = False, progress: "
                 "collections.abc.Callable[[float], object] | bool | None = None, **options: "
                 "typing.Any) -> StudyResult"),
         "Every combination of the lists in a file (or its text), measured alike. Without a file, "
-        "as a "
-        "dict, "
-        "or beside it: system (names, texts, or dicts of system, label, parameters, inputs, "
-        "velocity, "
-        "…), until [s], repeats, title, zipped, reference, and any option that a study may vary "
+        "as a dict, or beside it: system (names, texts, Mechanisms, or dicts of system, label, "
+        "parameters, inputs, velocity, …), until [s], repeats, title, zipped, reference, and any "
+        "option that a study may vary "
         "with its values: scheme=['lift', 'balance'], step=[0.1, 0.05]. threads: 0 is all cores. "
-        "folder: keeps a journal there and resumes from it. Ctrl-C stops it.");
+        "folder: keeps a journal there and resumes from it, but not for a Mechanism, which a "
+        "journal cannot have. Ctrl-C stops it.");
 }
 
 }  // namespace hamel::python

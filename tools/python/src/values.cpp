@@ -55,9 +55,6 @@ std::vector<double> numbers(const std::string& name, nb::handle value) {
 
 SystemText system_text(const std::string& key, nb::handle system) {
   if (nb::isinstance<SystemText>(system)) return nb::cast<const SystemText&>(system);
-  if (nb::isinstance<ByParts>(system))
-    throw ConfigError({key + ": got a Mechanism, whose functions a journal cannot have: expected a "
-                             "name, a file, the text of one, or Mechanism.from_toml(text)"});
   const std::string given = text(key, system);
   return given.find('\n') == std::string::npos ? SystemText{"", given}
                                                : SystemText{given, "system.toml"};

@@ -45,6 +45,10 @@ def test_a_fit_returns_the_numbers_of_its_recording():
     assert fit.parameters[0].name == "offset"
     assert fit.parameters[0].value == pytest.approx(0.3, abs=1e-8)
     assert fit.undetermined == []
+    names, options = {"offset": (0.2, 0, 1)}, {"velocity": [1, 1, 0], "rtol": 1e-11}
+    parts = hamel.fit("chaplygin_sleigh", data, names, segments=3, **options)
+    assert (fit.segments, parts.segments) == ([1], [3])
+    assert parts["offset"].value == pytest.approx(fit["offset"].value, abs=1e-9)
     with pytest.raises(hamel.ConfigError, match="offset"):
         hamel.fit("chaplygin_sleigh", data, ["ofset"])
 

@@ -144,3 +144,51 @@ def test_friction_stops_and_walls():
     with pytest.raises(hamel.ConfigError, match="friction: got -1"):
         sled.point("other", "sled", friction=-1)
         hamel.run(sled, until=1)
+
+
+def test_mechanisms_in_ensembles_and_studies(tmp_path):
+    def driven(wrong=False):
+        mechanism = scooter()
+        mechanism.motor("steer", lambda t, q, v, u: (1 / 0 if wrong else -2 * q[3]))
+        return mechanism
+
+    options = {
+        "until": 0.5,
+        "step": 0.01,
+        "vary": {"speed": {"values": [1, 2]}},
+        "keep": ["end.x", "end.steer.angle"],
+    }
+    many = hamel.ensemble(driven(), threads=2, **options)
+    same = hamel.ensemble({"system": driven(), **options}, threads=1)
+    for speed, x, angle in zip(many["speed"], many["end.x"], many["end.steer.angle"]):
+        one = hamel.run(driven(), until=0.5, step=0.01, speed=speed)
+        assert (x, angle) == (one["x"][-1], one["steer.angle"][-1])
+    np.testing.assert_array_equal(same["end.x"], many["end.x"])
+    with pytest.raises(ZeroDivisionError):
+        hamel.ensemble(driven(wrong=True), threads=2, **options)
+    with pytest.raises(hamel.ConfigError, match="a journal cannot have 'scooter'"):
+        hamel.ensemble(driven(), folder=tmp_path / "many", **options)
+    with pytest.raises(hamel.ConfigError, match="keys beside a file"):
+        hamel.ensemble("many.toml", until=1)
+
+    cells = hamel.study(driven(), until=0.5, repeats=1, scheme=["lift", "rkmk4"], step=[0.1, 0.05])
+    assert cells and len(cells) == 4
+    named = hamel.study(
+        system=[{"system": driven(), "label": "mine"}, "suslov"],
+        until=0.5,
+        repeats=1,
+        scheme=["lift", "rkmk4"],
+        step=[0.1, 0.05],
+    )
+    assert named["system"] == ["mine"] * 4 + ["suslov"] * 4
+    np.testing.assert_array_equal(cells["error"], named["error"][:4])
+    with pytest.raises(hamel.ConfigError, match="a journal cannot have 'scooter'"):
+        hamel.study(driven(), folder=tmp_path / "cells", step=[0.1])
+    for name, result in (("many", many), ("cells", cells)):
+        try:
+            result.write_page(tmp_path / f"{name}.html")
+        except hamel.ConfigError as error:
+            pytest.skip(str(error))
+        assert "steer" in (tmp_path / f"{name}.html").read_text() or name == "cells"
+    with pytest.raises(hamel.ConfigError, match="output format '.htm'"):
+        many.write_page(tmp_path / "many.htm")

@@ -28,6 +28,7 @@ const page = readFileSync(built, 'utf8');
 const good = fill(page, JSON.stringify(sample));
 const small = (...blocks) => fill(page, JSON.stringify({ title: 'Fault', sections: [{ title: 'One', blocks }] }));
 const text = { kind: 'text', paragraphs: ['A text.'] };
+const note = { kind: 'verdict', status: 'note', text: 'A note.' };
 const series = [{ name: 'a', x: [0, 1, 2], y: [0, 1, 0] }];
 const plot = { kind: 'plot', title: 'A plot', x: 'x', y: 'y', series };
 const tinyPath = { kind: 'path', title: 'A turn in place', x: 'x [m]', y: 'y [m]', series: [{ name: 'a', x: [0, 3e-18, -8.7e-18, 1.5e-17], y: [0, 1.2e-17, -3.6e-17, -1.2e-17] }] };
@@ -56,6 +57,8 @@ function bent(block, file, from, to) {
 // A disk that turns about its own axis and leaves no trail: only its mark shows it.
 const spin = { kind: 'animation', title: 'Spin', view: '3d', times: [0, 8], floor: true, bodies: [{ name: 'disk',
   poses: [[0, 0, 1, 1, 0, 0, 0], [0, 0, 1, Math.SQRT1_2, 0, 0, Math.SQRT1_2]], shapes: [{ shape: 'cylinder', radius: 1, length: 0.2, color: 'accent' }] }] };
+/** The table with a first column of names that a filter takes for several words: n = 0, n = 1, … */
+const spaced = (table) => ({ ...table, rows: table.rows.map(([, ...rest], i) => [`n = ${i % 7}`, ...rest]) });
 const shaped = (shape) => ({ ...spin, bodies: [{ ...spin.bodies[0], shapes: [shape] }] });
 
 /** name, page, exit status, what the message must say. */
@@ -74,6 +77,8 @@ const cases = [
   ['a blank chart', planted(small(plot), `addEventListener('load', () => setTimeout(() => {
     document.querySelector('.chart svg').replaceChildren(); }, 60))`), 1, /is not blank/],
   ['something too wide', planted(small(text), "document.body.append(Object.assign(document.createElement('div'), { style: 'width:1500px;height:9px' }))"), 1, /no horizontal overflow at 1280/],
+  ['notes before a plot', small(note, note, plot), 1, /the first figure comes before the notes: 2 before it/],
+  ['notes behind a plot', small(note, plot, note), 0, /passed, 0 failed/],
   ['a path of tiny numbers', small(tinyPath), 0, /passed, 0 failed/],
   ['a margin that tiny numbers do not fit', () => bent(tinyPath, 'charts/plot.js', 'if (equal) margin.left =', 'if (!data) margin.left ='), 1, /no words are cut at 390 px/],
   ['a heat map alone', small(errorMap), 0, /passed, 0 failed/],
@@ -91,6 +96,7 @@ const cases = [
   ['a dead arrow key', () => bent(errorMap, 'charts/keys.js', 'ArrowDown: columns', 'ArrowDown: 0'), 1, /heat map .*(darker|read out)/],
   ['filters that hide nothing', () => bent(convergence, 'charts/filters.js', '|| tag(tags, name) === select.value', '|| true'), 1, /the first value is chosen at the start: 40 series, not 4/],
   ['fits left out', () => bent(convergence, 'charts/series.js', 's.fit.text || ', ''), 1, /a fit is in the legend/],
+  ['names of several words', small(spaced(longTable(50, 8))), 0, /passed, 0 failed/],
   ['words that are not looked for', () => bent(longTable(50, 8), 'blocks/table_filter.js', 'text(entry).includes(word)', 'true'), 1, /the words filter the rows/],
   ['a dead drop-down', () => bent(longTable(50, 8), 'blocks/table_filter.js', "=== list[select.value]", '!== undefined'), 1, /a drop-down filters the rows/],
   ['all rows at once', () => bent(longTable(400, 8), 'blocks/table.js', 'const SLICE = 150', 'const SLICE = 1e9'), 1, /made in slices/],

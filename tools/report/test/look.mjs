@@ -139,6 +139,16 @@ async function checkWidth(page, width, check) {
   check(`no option is broken at ${width} px`, broken.length === 0, broken.slice(0, 3).join('; '));
 }
 
+/** Notes fill a phone: before the first figure there is one at most. */
+async function checkOrder(page, check) {
+  const before = await page.evaluate(() => {
+    const blocks = [...document.querySelectorAll('[data-block]')];
+    const first = blocks.findIndex((block) => block.matches('figure'));
+    return first < 0 ? [] : blocks.slice(0, first).filter((block) => block.matches('.verdict.note')).map((block) => block.textContent);
+  });
+  check('the first figure comes before the notes', before.length <= 1, `${before.length} before it: ${before[1]?.slice(0, 60)}`);
+}
+
 /** A card that gets narrower shrinks its drawing at once: a plain screenshot may come before that is made again. */
 async function checkShrinking(page, check) {
   const wide = await page.evaluate(() => {
@@ -203,6 +213,7 @@ async function checkPage(browser, file, check, failures, { commands, options }) 
   check('the data fit schema.json', odd === '', odd);
   const { expected, solid } = await checkBlocks(page, check);
   await checkWidth(page, 390, check);
+  await checkOrder(page, check);
   if (options.narrow) await page.screenshot({ path: options.narrow, fullPage: true });
   await checkWidth(page, 1280, check);
   if (options.screenshot) await page.screenshot({ path: options.screenshot, fullPage: true });

@@ -20,7 +20,7 @@ const disk = () => {
     return [x, y, 0.5 * Math.cos(tilt), ...turn];
   });
   return { kind: 'animation', title: 'Rolling disk', view: '3d', times, floor: true, note: 'The trail is that of the centre.',
-    forces: [{ name: 'ground', values: poses.map(([px, py], i) => [px, py, 0, 2 * Math.cos(times[i]), 2 * Math.sin(times[i]), 9.81]) }],
+    forces: [{ name: 'ground', modes: times.map((t) => (t < 6 ? 2 : 1)), cone: { friction: 0.25, normals: [[0, 0, 1]] }, values: poses.map(([px, py], i) => [px, py, 0, 2 * Math.cos(times[i]), 2 * Math.sin(times[i]), 9.81]) }],
     bodies: [{ name: 'disk', poses, trail: true, trail_point: [0, 0, 0], shapes: [{ shape: 'cylinder', radius: 0.5, length: 0.06, axis: [0, 1, 0], color: 'accent' }] }] };
 };
 

@@ -1,16 +1,11 @@
 // The library in its worker: calls as promises, and a worker in place of one that is lost or takes too long.
 
-async function compiled(response) {
-  const answer = await response;
-  const again = answer.clone();  // for a server that gives the file another type
-  return WebAssembly.compileStreaming(answer).catch(async () => WebAssembly.compile(await again.arrayBuffer()));
-}
-
-/** {worker() -> Worker, wasm: Promise of a Response}: how the page has them, in files or within itself. */
+/** {worker() -> Worker, compiled: Promise of a WebAssembly.Module, stored(name) -> a motion or null}: how the page has them, in files or within itself. */
 export class Library {
   constructor(source) {
     this.source = source;
-    this.compiled = compiled(source.wasm);
+    this.compiled = source.compiled;
+    this.compiled.catch(() => {});  // told by whoever calls
     this.waiting = new Map();
     this.count = 0;
     this.#start();
@@ -30,7 +25,7 @@ export class Library {
       };
     });
     this.ready.catch(() => {});  // told by whoever calls
-    this.compiled.then((compiled) => worker.postMessage({ compiled }));
+    this.compiled.then((compiled) => worker.postMessage({ compiled }), (error) => worker.onerror(error));
   }
 
   /** -> {answer, numbers}. A call that `restart` ends has the answer {ok: false, ended: true}. */

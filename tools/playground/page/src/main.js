@@ -4,7 +4,7 @@ import '../../../report/src/style.css';
 import '../../../report/src/figures.css';
 import '../../../report/src/print.css';
 import './playground.css';
-import { animation } from '../../../report/src/stage/animation.js';
+import { animation, warm } from '../../../report/src/stage/animation.js';
 import { h, inline } from '../../../report/src/dom.js';
 import { Controls } from './controls.js';
 import { Drive } from './drive.js';
@@ -101,6 +101,17 @@ function showMotion(block) {
   page.shown = { block, figure };
   figure.draw();
   figure.play();
+  requestAnimationFrame(() => { document.documentElement.dataset.first ??= Math.round(performance.now()); });
+}
+
+/** The motion of a registered system as it was when this page was built, while the library is on its way. */
+async function showStored(name) {
+  const early = () => !page.shown && !document.documentElement.dataset.ready;
+  if (!early()) return;
+  const stored = await library.source.stored(name).catch(() => null);
+  if (!stored || !early()) return;
+  $('text').textContent = stored.text;
+  showMotion(motionOf(stored.motion, new Float32Array(Uint8Array.from(atob(stored.numbers), (c) => c.charCodeAt(0)).buffer)));
 }
 
 /** Charts: their code comes when the first motion is there. */
@@ -153,6 +164,7 @@ async function read() {
     return null;
   }) ?? { system: FIRST, options: {}, parameters: {}, inputs: {} };
   if (state.text === undefined) {
+    showStored(state.system);
     state.text = await textOf(state.system).catch(async () => {
       state.system = FIRST;
       return textOf(FIRST);
@@ -215,7 +227,9 @@ function addButtons() {
 }
 
 async function begin() {
-  await read();
+  const state = read();
+  warm();  // while the library is compiled and runs for the first time
+  await state;
   $('text').textContent = page.state.text;
   run();
   addButtons();

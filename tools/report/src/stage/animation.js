@@ -5,10 +5,10 @@ import { colourOfMode, MODES } from '../charts/palette.js';
 import { h } from '../dom.js';
 import { figure, remark } from '../figure.js';
 import { formatNumber, formatShort } from '../format.js';
-import { arrowOf, contactAt, floorGrid, middleOf, placed, placeInTime, poseAt, readMotion, roomOf } from './motion.js';
+import { arrowOf, coneOf, contactAt, floorGrid, middleOf, placed, placeInTime, poseAt, readMotion, roomOf } from './motion.js';
 import { columnsToCsv } from '../save.js';
 import { addLight, lines, pairs, solids, stand, styled } from './shapes.js';
-import { ABOVE, HOME, Stage } from './stage.js';
+import { ABOVE, HOME, Stage, warm as warmStage } from './stage.js';
 
 const heightFor = (width) => Math.round(Math.max(250, Math.min(380, 0.75 * width)));
 const TICKS = 1000;       // of the bar
@@ -93,10 +93,10 @@ export function animation(block, { height = heightFor } = {}) {
     motion.missing ? remark(`${motion.missing} of ${times.length} poses are missing.`) : null, block.note ? remark(block.note) : null], { svg: () => stage.picture(false), png: () => stage.picture(true), csv });
   const draw = () => {
     say();
-    const drawn = stage.draw();
-    follow(long);
-    seek(start);
-    return drawn;
+    return stage.draw(() => {
+      follow(long);
+      seek(start);
+    });
   };
   /** Shows another motion of as many bodies from where the eye is, at about the same time; anew where the one before had ended. */
   const show = (other) => {
@@ -139,6 +139,14 @@ export function animation(block, { height = heightFor } = {}) {
   };
   return { element, draw, picture: () => stage.picture(false), show, feed, follow, hold, film, play: run, dispose };
 }
+
+/** Makes the next animation ready to be drawn by WebGL: its shaders, while the page waits for its data. */
+export const warm = () => warmStage(() => {
+  const scene = new Scene();
+  addLight(scene, true);
+  scene.add(...solids({ shape: 'box', size: [1, 1, 1], colour: styled('--c1') }, true), new Mesh(new SphereGeometry(1), new MeshBasicMaterial()));
+  return scene;
+});
 
 /** A motion, its times and bodies, its room, whether that is long against the bodies, the grid on the floor. */
 function spread(block) {
@@ -203,6 +211,8 @@ function build(motion, grid, solid, poses, now, pushing, seen, ghosts) {
   const scale = Math.max(motion.reach, ARROW * seen) / motion.strongest;
   const arrows = motion.forces.map(() => lines(solid, [], styled('--ink'), 3, { depthTest: false, renderOrder: 1 }));
   if (arrows.length) scene.add(...arrows);
+  const cones = motion.forces.filter(({ cone }) => cone).map((force) => ({ force, drawn: lines(solid, [], styled('--ink'), 1.6, { depthTest: false, renderOrder: 1 }) }));
+  cones.forEach(({ drawn }) => scene.add(drawn));
   const dots = motion.forces.filter(({ modes }) => modes.length).map((force) => {
     const dot = new Mesh(new SphereGeometry(DOT * motion.reach, solid ? 20 : 8, solid ? 12 : 6), new MeshBasicMaterial());
     return { force, dot };
@@ -211,6 +221,10 @@ function build(motion, grid, solid, poses, now, pushing, seen, ghosts) {
   const update = (camera) => {
     light(camera);
     arrows.forEach((arrow, f) => arrow.place(pushing() ? arrowOf(motion.forces[f], now(), scale) : []));
+    for (const { force, drawn } of cones) {
+      drawn.place(pushing() ? coneOf(force, now(), scale) : []);
+      drawn.material.color.copy(styled(colourOfMode(MODES[contactAt(force, now())?.mode]) ?? '--ink'));
+    }
     const at = poses();
     for (const { force, dot } of dots) {
       const contact = contactAt(force, now());

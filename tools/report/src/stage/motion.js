@@ -5,6 +5,8 @@ const COLOURS = { body: '#4d86bd', accent: '#d55e00', dark: '#2f3a46', light: '#
 const NEEDS = { box: 'size', cylinder: 'radius', wheel: 'radius', sphere: 'radius', ellipsoid: 'radii', line: 'points', arrow: 'to' };
 
 const TOUCHING = 0.02;  // of the radius: what rolls inside a shell
+const SIDES = 36, SPOKE = 6;  // of the rim of a cone; every so many a line to it
+const WIDE = 2;         // a cone of more friction is lower than its force
 
 export const add = (a, b) => a.map((v, i) => v + b[i]);
 const isPoint = (p) => Array.isArray(p) && p.length === 3 && p.every(Number.isFinite);
@@ -87,7 +89,10 @@ function readForce(force, f, times) {
   if (!Array.isArray(values) || values.length !== times.length) throw new Error(`${where} needs a list of ${times.length} values`);
   const modes = force.modes ?? [];
   if (modes.length && modes.length !== times.length) throw new Error(`${where} needs a mode for each of ${times.length} times`);
-  return { name: String(force.name ?? ''), modes, values: values.map((v) =>
+  const normals = force.cone?.normals ?? [];
+  if (normals.length > 1 && normals.length !== times.length) throw new Error(`${where} needs one normal of its cone, or ${times.length}`);
+  const cone = normals.length ? { friction: force.cone.friction, normals } : null;
+  return { name: String(force.name ?? ''), modes, cone, values: values.map((v) =>
     (Array.isArray(v) && v.length === 6 && v.every(Number.isFinite) ? { at: v.slice(0, 3), force: v.slice(3) } : null)) };
 }
 
@@ -195,6 +200,19 @@ export function arrowOf({ values }, place, scale) {
   const turn = turnFromZ(along);
   const barb = (x) => add(tip, turned(turn, [x, 0, -2 * Math.abs(x)]));
   return [...now.at, ...tip, ...tip, ...barb(0.08 * length), ...tip, ...barb(-0.08 * length)];
+}
+
+/** The cone of Coulomb's friction around a force at a time, as high as its normal part, as segments: a circle and lines to it. */
+export function coneOf({ values, cone }, place, scale) {
+  const now = nearest(values, place);
+  const normal = cone && (cone.normals.length > 1 ? nearest(cone.normals, place) : cone.normals[0]);
+  if (!now || !normal?.every(Number.isFinite)) return [];
+  const height = scale * now.force.reduce((sum, v, i) => sum + v * normal[i], 0);
+  if (!(height > 0)) return [];
+  const turn = turnFromZ(normal);
+  const [top, radius] = [height, cone.friction * height].map((v) => v * Math.min(1, WIDE / cone.friction));
+  const rim = Array.from({ length: SIDES }, (_, i) => add(now.at, turned(turn, [radius * Math.cos((2 * Math.PI * i) / SIDES), radius * Math.sin((2 * Math.PI * i) / SIDES), top])));
+  return rim.flatMap((point, i) => [...point, ...rim[(i + 1) % SIDES], ...(i % SPOKE ? [] : [...now.at, ...point])]);
 }
 
 /** The grid under the box, a hair below z = 0: {step, lines: [[from, to], …]}; its step about `wanted` or larger. */

@@ -25,8 +25,22 @@ const AXES = 'stroke: var(--soft); stroke-width: 1.4; font: 12px/1 system-ui, sa
 const WORDS = 'fill: var(--ink); stroke: var(--paper); stroke-width: 3px; paint-order: stroke; text-anchor: middle; dominant-baseline: middle';
 
 let solid = 0;  // stages drawn by WebGL
+let spare = null;
+
+/** Makes WebGL ready for the next stage, which then has no first picture as SVG; scene(): what compiles the shaders that it needs. */
+export function warm(scene) {
+  spare ??= makeWebgl();
+  if (!spare) return;
+  spare.setSize(1, 1);
+  spare.render(scene(), new OrthographicCamera(-1, 1, 1, -1, 0, 1));
+}
 
 function makeWebgl() {
+  if (spare) {
+    const made = spare;
+    spare = null;
+    return made;
+  }
   const canvas = document.createElement('canvas');
   const options = { antialias: true, alpha: true, preserveDrawingBuffer: true };
   const context = solid < MOST_SOLID ? canvas.getContext('webgl2', options) : null;
@@ -82,28 +96,39 @@ export class Stage {
     this.#keys();
   }
 
-  /** The first picture, as SVG; then by WebGL. */
-  async draw() {
+  /** The first picture, as SVG, behind what `first` sets; then by WebGL. Where that is ready (`warm`), by WebGL at once. */
+  async draw(first = () => {}) {
+    const ready = spare !== null && this.#takeWebgl();
+    this.held = true;
     this.rebuild();
     this.goTo(this.from);
+    first();
+    this.held = false;
+    this.paint();
     this.controls.addEventListener('change', () => { if (!this.painting) this.paint(); });
     const isDark = matchMedia('(prefers-color-scheme: dark)');
     const repaint = () => this.rebuild();
     isDark.addEventListener('change', repaint);
     this.endings.push(followWidth(this.holder, () => this.paint()), () => isDark.removeEventListener('change', repaint),
       onPaper(() => isDark.matches && this.rebuild(), () => isDark.matches && this.rebuild()));  // in the colours of paper
+    if (ready) return;
     await afterFirstPicture();
     if (this.disposed) return;
     if (!this.#useWebgl()) this.holder.closest('figure').append(remark('Drawn without WebGL, which this browser does not offer here.'));
   }
 
-  #useWebgl() {
+  #takeWebgl() {
     const renderer = makeWebgl();
     if (!renderer) return false;
     this.renderer.domElement.replaceWith(renderer.domElement);
     this.renderer = renderer;
-    this.rebuild();
     return true;
+  }
+
+  #useWebgl() {
+    const taken = this.#takeWebgl();
+    if (taken) this.rebuild();
+    return taken;
   }
 
   /** What draws the picture as it stands on a canvas of its own, at once, `sharper` pixels per CSS pixel -> () => canvas. */
@@ -188,7 +213,7 @@ export class Stage {
   paint() {
     const { camera, controls, holder, renderer } = this;
     const width = holder.clientWidth;
-    if (!width || !this.shown || !this.fit) return;
+    if (this.held || !width || !this.shown || !this.fit) return;
     const height = this.height(width);
     const at = this.follows?.();
     if (at) {

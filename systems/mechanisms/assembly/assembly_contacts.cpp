@@ -1,0 +1,206 @@
+// Assembly: contacts that slide, open and strike; dry friction and stops of joints; walls.
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <hamel/systems/mechanisms/assembly/assembly.hpp>
+
+namespace hamel {
+
+using namespace mechanisms;
+
+namespace {
+
+bool is_size(const std::optional<double>& value) {
+  return !value || (*value >= 0 && std::isfinite(*value));
+}
+
+}  // namespace
+
+void Assembly::check_friction(const Mechanism::ContactPart& part) {
+  const auto size = [&](const char* what, const std::optional<double>& value) {
+    if (!is_size(value))
+      wrong(part, part.kind, fmt::format("{}: got {}, expected at least 0", what, *value));
+  };
+  size("friction", part.friction);
+  size("load", part.load);
+  size("static_friction", part.static_friction);
+  size("share", part.share);
+  const auto coefficient = [&](const char* what, const std::optional<double>& value) {
+    if (value && !(*value >= 0 && *value <= 1))
+      wrong(part, part.kind, fmt::format("{}: got {}, expected in [0, 1]", what, *value));
+  };
+  coefficient("restitution", part.restitution);
+  coefficient("tangential_restitution", part.tangential_restitution);
+  if (part.friction && part.static_friction && *part.static_friction < *part.friction)
+    wrong(part, part.kind,
+          fmt::format("static_friction: got {}, expected at least friction, {}",
+                      *part.static_friction, *part.friction));
+  check_share(part);
+  if (part.friction) return;
+  const auto alone = [&](const char* what) {
+    wrong(part, part.kind,
+          fmt::format("{}: set friction too, 0 for a smooth ground; without, the contact is ideal",
+                      what));
+  };
+  if (part.static_friction) alone("static_friction");
+  if (part.restitution) alone("restitution");
+  if (part.tangential_restitution) alone("tangential_restitution");
+  if (part.load) alone("load");
+  if (part.unilateral && *part.unilateral) alone("unilateral");
+}
+
+void Assembly::check_brakes() {
+  for (const auto& part : parts_.brakes_) {
+    joint_of(part, "brake");
+    if (!(part.range.least >= 0))
+      wrong(part, "brake", fmt::format("least: got {}, expected at least 0", part.range.least));
+  }
+}
+
+void Assembly::check_joint_friction(const Mechanism::JointPart& part) {
+  if (!part.friction && part.stop.empty() && !part.restitution) return;
+  if (!find_joint_kind(part.kind)->has_coordinate) {
+    wrong(part, "joint",
+          fmt::format("friction and stop: expected a {}, got {}", kinds_with_coordinate(),
+                      part.kind));
+    return;
+  }
+  if (!is_size(part.friction))
+    wrong(part, "joint", fmt::format("friction: got {}, expected at least 0", *part.friction));
+  if (!part.stop.empty() && !(part.stop.size() == 2 && part.stop[0] < part.stop[1] &&
+                              std::isfinite(part.stop[1] - part.stop[0])))
+    wrong(
+        part, "joint",
+        fmt::format("stop: got [{}], expected two numbers, the lower one first", join(part.stop)));
+  if (!part.restitution) return;
+  if (part.stop.empty()) wrong(part, "joint", "restitution: expected a stop beside it");
+  else if (!(*part.restitution >= 0 && *part.restitution <= 1))
+    wrong(part, "joint", fmt::format("restitution: got {}, expected in [0, 1]", *part.restitution));
+}
+
+bool Assembly::is_of_joint(const std::string& row, const Mechanism::JointPart& part) {
+  return row == part.name || row == part.name + ".low" || row == part.name + ".high";
+}
+
+// In this order: friction and stops of a joint, one after the other; walls.
+std::vector<Coupling> Assembly::slipping_couplings() {
+  std::vector<Coupling> out;
+  check_brakes();
+  const auto add = [&](const std::string& name, const std::string& formula, double limit, int link,
+                       std::vector<int> velocities) {
+    out.push_back({name,
+                   Expression(formula, {"q", "rate"}, {{"limit", limit}}),
+                   {link},
+                   std::move(velocities),
+                   false,
+                   {},
+                   true});
+  };
+  int first = 0;
+  for (size_t j = 0; j < links_.size(); ++j) {
+    const Mechanism::JointPart& part = *link_joints_[j];
+    const int link = static_cast<int>(j), dof = first;
+    first += links_[j].joint->dim();
+    if (links_[j].is_state) continue;
+    check_joint_friction(part);
+    if (links_[j].joint->dim() != 1 || !find_joint_kind(part.kind)->has_coordinate) continue;
+    const bool braked = std::ranges::any_of(
+        parts_.brakes_, [&](const auto& brake) { return brake.name == part.name; });
+    if (part.friction || braked) add(part.name, "rate", 0, link, {dof});
+    if (part.stop.size() != 2) continue;
+    add(part.name + ".low", "q - limit", part.stop[0], link, {});
+    add(part.name + ".high", "limit - q", part.stop[1], link, {});
+  }
+  for (const auto& part : parts_.walls_)
+    if (auto found = wall(part)) out.push_back(std::move(*found));
+  for (const Coupling& one : out) {
+    for (const auto& contact : parts_.contacts_)
+      if (contact.name == one.name && contact.friction)
+        wrong(contact, contact.kind, "this name is taken by a joint with friction");
+    for (const auto& coupling : parts_.couplings_)
+      if (coupling.name == one.name)
+        wrong(coupling, "coupling", "this name is taken by a joint with friction");
+  }
+  return out;
+}
+
+std::optional<Coupling> Assembly::wall(const Mechanism::WallPart& part) {
+  if (!(part.restitution >= 0 && part.restitution <= 1))
+    wrong(part, "wall", fmt::format("restitution: got {}, expected in [0, 1]", part.restitution));
+  Mechanism::CouplingPart formula;
+  formula.name = part.name;
+  formula.where = part.where;
+  formula.formula = part.distance;
+  formula.constants = part.constants;
+  auto out = coupling(formula, "wall", "distance");
+  if (out) out->slips = true;
+  return out;
+}
+
+// Place of a row among the kept ones, or -1.
+int Assembly::kept_place(const Multibody& system, size_t row) {
+  const auto at = std::ranges::find(system.kept(), static_cast<int>(row));
+  return at == system.kept().end() ? -1 : static_cast<int>(at - system.kept().begin());
+}
+
+void Assembly::add_law(const Multibody& system, size_t contact, size_t row, double load) {
+  const Mechanism::ContactPart& part = parts_.contacts_[contact];
+  const size_t height = row + system.all_rows().contacts[contact].row_count() - 1;
+  ContactLaw law;
+  law.name = part.name;
+  law.friction = *part.friction;
+  law.static_friction = part.static_friction.value_or(0);
+  law.restitution = part.restitution.value_or(0);
+  law.tangential_restitution = part.tangential_restitution.value_or(0);
+  for (; row < height; ++row)
+    if (const int place = kept_place(system, row); place >= 0) law.tangential.push_back(place);
+  if (const int place = kept_place(system, height); place >= 0) law.normal = place;
+  else law.load = load;
+  law.share = parts_.distribution_.name == "refuse" ? 0 : part.share.value_or(1);
+  model_.contact_laws.push_back(std::move(law));
+}
+
+void Assembly::add_law(const Coupling& coupling, int place) {
+  ContactLaw law;
+  law.name = coupling.name;
+  law.of_joint = true;
+  if (coupling.of_rates()) law.tangential = {place};
+  else law.normal = place;
+  law.friction = coupling.of_rates() ? 1 : 0;
+  for (const auto& part : parts_.joints_) {
+    if (!is_of_joint(coupling.name, part)) continue;
+    law.restitution = part.restitution.value_or(0);
+    if (!coupling.of_rates()) continue;
+    law.load = part.friction.value_or(0);
+    for (size_t i = 0; i < model_.inputs.size(); ++i)
+      if (model_.inputs[i].name == part.name + ".brake") law.load_input = static_cast<int>(i);
+  }
+  for (const auto& part : parts_.walls_)
+    if (part.name == coupling.name) law.restitution = part.restitution;
+  model_.contact_laws.push_back(std::move(law));
+}
+
+void Assembly::state_contacts(const Multibody& system) {
+  const std::vector<double> loads = this->loads(system);
+  const ConstraintRows& rows = system.all_rows();
+  size_t row = 0;
+  for (size_t i = 0; i < rows.contacts.size(); ++i) {
+    if (rows.contacts[i].slips) add_law(system, i, row, loads[i]);
+    row += rows.contacts[i].row_count();
+  }
+  const std::string& policy = parts_.distribution_.name;
+  if (std::ranges::count_if(model_.contact_laws, &ContactLaw::has_normal) > 3 && policy != "refuse")
+    model_.notes.push_back(fmt::format(
+        "more than three contacts: loads that the motion leaves open are those of contacts of {} "
+        "(distribution)",
+        policy == "stated" ? "the stated shares" : "equal compliance"));
+  for (const Loop& loop : rows.loops) row += loop.row_count();
+  for (const Coupling& coupling : rows.couplings) {
+    const int place = kept_place(system, row++);
+    if (coupling.slips && place >= 0) add_law(coupling, place);
+  }
+}
+
+}  // namespace hamel
