@@ -16,7 +16,7 @@ using graph::Number;
 using Numbers = std::vector<Number>;
 using Traces = std::vector<Traced>;
 
-constexpr int kMostRecords = 20;  // of one run
+constexpr std::size_t kMostRecords = 20;  // of one run
 
 Traces traced(const Numbers& x) {  // of what no formula of a group branches on
   Traces out;
@@ -38,7 +38,8 @@ Traces times(const Traced& factor, Traces x) {
 // Programs recorded at the inputs of a RecordedLift.
 class LiftRecording {
  public:
-  explicit LiftRecording(RecordedLift& out) : out_(out), geometry_(*out.geometry_) {
+  LiftRecording(const RecordedLift& out, RecordedLift::Record& record)
+      : out_(out), record_(record), geometry_(*out.geometry_) {
     from_ = take("from", out.columns_);
     reference_ = take("reference", out.columns_);
     w_ = take("w", out.n_);
@@ -62,7 +63,7 @@ class LiftRecording {
     by.push_back(h_.number);
     by.push_back(t_.number);
     const Numbers end = this->end();
-    for (const Guards::Guard& guard : guards_.all()) out_.guards_.push_back(guard.negative);
+    for (const Guards::Guard& guard : guards_.all()) record_.guards.push_back(guard.negative);
 
     Numbers all = residual_;
     all.insert(all.end(), end.begin(), end.end());
@@ -289,14 +290,14 @@ class LiftRecording {
       for (std::size_t i = 0; i < columns[j].size(); ++i) {
         const bool of_end = i >= unknowns;
         const std::size_t row = of_end ? i - unknowns : i;
-        RecordedLift::Sparse& to =
-            of_end ? (of_x ? out_.end_by_x_ : out_.end_by_q_) : (of_x ? out_.by_x_ : out_.by_q_);
+        RecordedLift::Sparse& to = of_end ? (of_x ? record_.end_by_x : record_.end_by_q)
+                                          : (of_x ? record_.by_x : record_.by_q);
         entry(all, to, row, column, columns[j][i]);
-        if (of_x && !of_end) entry(equation, out_.equation_by_x_, row, column, columns[j][i]);
+        if (of_x && !of_end) entry(equation, record_.equation_by_x, row, column, columns[j][i]);
       }
     }
-    out_.equation_ = code(equation);
-    out_.first_ = code(all);
+    record_.equation = code(equation);
+    record_.first = code(all);
   }
   // The lower triangle of the second derivatives of lambda . S + rho . R.
   void record_curvature(const Numbers& by, const Numbers& all) {
@@ -307,14 +308,15 @@ class LiftRecording {
     for (std::size_t i = 0; i < by.size(); ++i)
       for (std::size_t j = 0; j <= i; ++j) {
         if (second[i][j].is(0)) continue;
-        out_.curvature_.entries.push_back(
+        record_.curvature.entries.push_back(
             {static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j), outputs.size()});
         add(outputs, second[i][j]);
       }
-    out_.second_ = code(outputs);
+    record_.second = code(outputs);
   }
 
-  RecordedLift& out_;
+  const RecordedLift& out_;
+  RecordedLift::Record& record_;
   const RecordedGeometry& geometry_;
   graph::Recording recording_;
   Guards guards_;
@@ -326,34 +328,27 @@ class LiftRecording {
 };
 
 bool RecordedLift::record() {
-  if (records_++ >= kMostRecords) return false;
-  guards_.clear();
-  for (auto* code : {&equation_, &first_, &second_}) code->reset();
-  for (Sparse* one : {&equation_by_x_, &by_x_, &by_q_, &end_by_x_, &end_by_q_, &curvature_})
-    one->entries.clear();
+  if (no_more_ || records_.size() >= kMostRecords) return false;
+  auto record = std::make_unique<Record>();
   try {
-    LiftRecording recording(*this);
-    if (!recording.record()) {
-      records_ = kMostRecords;
+    if (!LiftRecording(*this, *record).record()) {
+      no_more_ = true;
       return false;
     }
   } catch (const DomainError&) {
     return false;
   } catch (const std::domain_error&) {  // a part of the system is no formula
-    records_ = kMostRecords;
+    no_more_ = true;
     return false;
   }
-  std::size_t outputs = 0, work = 0;
-  for (const graph::Code* code : {equation_.get(), first_.get(), second_.get()}) {
+  for (const graph::Code* code :
+       {record->equation.get(), record->first.get(), record->second.get()}) {
     if (code == nullptr) continue;
-    outputs = std::max(outputs, code->program().results().size());
-    work = std::max(work, code->work_size());
+    out_.resize(std::max(out_.size(), code->program().results().size()));
+    work_.resize(std::max(work_.size(), code->work_size()));
   }
-  out_.resize(outputs);
-  work_.resize(work);
-  const auto x = static_cast<Eigen::Index>(unknowns_), n = static_cast<Eigen::Index>(n_);
-  r_x_.setZero(x, x);
-  s_x_.setZero(2 * n, x);
+  records_.push_back(std::move(record));
+  clear_matrices();
   return true;
 }
 

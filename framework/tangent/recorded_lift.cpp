@@ -63,11 +63,32 @@ std::unique_ptr<RecordedLift> RecordedLift::of(const RunPlan& plan, Order order)
 }
 
 // False where a guard has changed: the record is of another branch.
-bool RecordedLift::evaluate(const graph::Code& code, std::size_t guards_at) {
-  code(in_.data(), out_.data(), work_.data());
-  for (std::size_t i = 0; i < guards_.size(); ++i)
-    if ((out_[guards_at + i] < 0) != guards_[i]) return false;
+bool RecordedLift::holds(std::size_t at, Which which) {
+  const Record& record = *records_[at];
+  (*(record.*which))(in_.data(), out_.data(), work_.data());
+  for (std::size_t i = 0; i < record.guards.size(); ++i)
+    if ((out_[unknowns_ + i] < 0) != record.guards[i]) return false;
   return true;
+}
+
+// Of the record in use, else of another one that holds here, else of a new one.
+bool RecordedLift::evaluate(Which which) {
+  for (std::size_t i = records_.size(); i-- > 0;) {
+    if (!holds(i, which)) continue;
+    if (i + 1 < records_.size()) {
+      std::swap(records_[i], records_.back());
+      clear_matrices();
+    }
+    return true;
+  }
+  return record() && holds(records_.size() - 1, which);
+}
+
+// Entries that another record has.
+void RecordedLift::clear_matrices() {
+  const auto x = static_cast<Eigen::Index>(unknowns_);
+  r_x_.setZero(x, x);
+  s_x_.setZero(2 * static_cast<Eigen::Index>(n_), x);
 }
 
 void RecordedLift::set(const MotionState& from, const Eigen::VectorXd& inputs, double h,
@@ -109,12 +130,11 @@ bool RecordedLift::solve(const MotionState& from, const Eigen::VectorXd& inputs,
   }
   set(from, inputs, h, x);
   std::copy_n(input(at_.from), columns_, input(at_.reference));
-  if (equation_ == nullptr && !record()) return false;
   Eigen::Map<Eigen::VectorXd> now(input(at_.x), count);
   for (int i = 0; i < kMostCorrections; ++i) {
-    if (!evaluate(*equation_, unknowns_) && (!record() || !evaluate(*equation_, unknowns_)))
-      return false;
-    for (const Sparse::Entry& e : equation_by_x_.entries) r_x_(e.row, e.column) = out_[e.output];
+    if (!evaluate(&Record::equation)) return false;
+    for (const Sparse::Entry& e : records_.back()->equation_by_x.entries)
+      r_x_(e.row, e.column) = out_[e.output];
     find_correction();
     if (!step_.allFinite()) return false;
     now -= step_;
@@ -156,7 +176,7 @@ bool RecordedLift::linearise(std::span<const double> reference) {
 
 bool RecordedLift::linearise(const MotionState& from, const Eigen::VectorXd& inputs, double h,
                              Unknowns& x, std::span<const double> reference) {
-  if (first_ != nullptr && x.size() == static_cast<Eigen::Index>(unknowns_)) {
+  if (x.size() == static_cast<Eigen::Index>(unknowns_)) {
     set(from, inputs, h, x);
     if (linearise(reference) && is_small(kSolved)) return true;
   }
@@ -165,18 +185,19 @@ bool RecordedLift::linearise(const MotionState& from, const Eigen::VectorXd& inp
 
 // Transposed: a column of way_, and of slopes_, is a row of X, and of the derivatives of the end.
 bool RecordedLift::linearise() {
-  if (!evaluate(*first_, unknowns_) && (!record() || !evaluate(*first_, unknowns_))) return false;
-  for (const Sparse::Entry& e : by_x_.entries) r_x_(e.row, e.column) = out_[e.output];
+  if (!evaluate(&Record::first)) return false;
+  const Record& record = *records_.back();
+  for (const Sparse::Entry& e : record.by_x.entries) r_x_(e.row, e.column) = out_[e.output];
   find_correction();
   way_.setZero(parameters(), static_cast<Eigen::Index>(unknowns_));
-  for (const Sparse::Entry& e : by_q_.entries) way_(e.column, e.row) = -out_[e.output];
+  for (const Sparse::Entry& e : record.by_q.entries) way_(e.column, e.row) = -out_[e.output];
   factors_.solve_rows(way_);
   slopes_.setZero(parameters(), s_x_.rows());
-  for (const Sparse::Entry& e : end_by_x_.entries) {
+  for (const Sparse::Entry& e : record.end_by_x.entries) {
     s_x_(e.row, e.column) = out_[e.output];
     slopes_.col(e.row) += out_[e.output] * way_.col(e.column);
   }
-  for (const Sparse::Entry& e : end_by_q_.entries) slopes_(e.column, e.row) += out_[e.output];
+  for (const Sparse::Entry& e : record.end_by_q.entries) slopes_(e.column, e.row) += out_[e.output];
   jacobian_ = slopes_.transpose();
   return jacobian_.allFinite();
 }
@@ -184,16 +205,17 @@ bool RecordedLift::linearise() {
 // Of the lower triangle of L'', half its diagonal: the sum over rows i of [X; 1]_i^T (L'' [X;
 // 1])_i, and its transpose.
 const Eigen::MatrixXd& RecordedLift::hessian(const Eigen::VectorXd& lambda) {
+  const Record& record = *records_.back();
   rho_.setZero(static_cast<Eigen::Index>(unknowns_));
-  for (const Sparse::Entry& e : end_by_x_.entries)
+  for (const Sparse::Entry& e : record.end_by_x.entries)
     rho_[e.column] -= s_x_(e.row, e.column) * lambda[e.row];
   factors_.solve_transposed(rho_);
   std::copy_n(lambda.data(), 2 * n_, input(at_.lambda));
   std::copy_n(rho_.data(), unknowns_, input(at_.rho));
-  (*second_)(in_.data(), out_.data(), work_.data());
+  (*record.second)(in_.data(), out_.data(), work_.data());
   const auto unknowns = static_cast<Eigen::Index>(unknowns_);
   half_.setZero(parameters(), parameters());
-  const std::vector<Sparse::Entry>& entries = curvature_.entries;
+  const std::vector<Sparse::Entry>& entries = record.curvature.entries;
   for (std::size_t i = 0; i < entries.size();) {
     const Eigen::Index row = entries[i].row;
     row_.setZero(parameters());

@@ -68,6 +68,13 @@ class RecordedLift {
     };
     std::vector<Entry> entries;
   };
+  // Programs of one branch of every formula: the outcome of each comparison is a guard.
+  struct Record {
+    std::vector<bool> guards;
+    std::unique_ptr<graph::Code> equation, first, second;
+    Sparse equation_by_x, by_x, by_q, end_by_x, end_by_q, curvature;
+  };
+  using Which = std::unique_ptr<graph::Code> Record::*;
   friend class LiftRecording;
   RecordedLift() = default;
   bool record();
@@ -75,7 +82,9 @@ class RecordedLift {
   bool linearise();
   void find_correction();
   bool is_small(double size) const;
-  bool evaluate(const graph::Code& code, std::size_t guards_at);
+  bool holds(std::size_t at, Which which);
+  bool evaluate(Which which);
+  void clear_matrices();
   double* input(std::size_t at) { return in_.data() + at; }
 
   const RunPlan* plan_ = nullptr;
@@ -83,14 +92,12 @@ class RecordedLift {
   std::shared_ptr<const RecordedGeometry> geometry_;
   std::size_t n_ = 0, k_ = 0, held_ = 0, inputs_ = 0, columns_ = 0, unknowns_ = 0;
   bool projects_ = false, curved_ = false;
-  int records_ = 0;
   // Where the inputs of the programs begin.
   struct Places {
     std::size_t from, reference, w, u, h, t, eta, zero, x, lambda, rho, all;
   } at_ = {};
-  std::vector<bool> guards_;
-  std::unique_ptr<graph::Code> equation_, first_, second_;
-  Sparse equation_by_x_, by_x_, by_q_, end_by_x_, end_by_q_, curvature_;
+  std::vector<std::unique_ptr<const Record>> records_;  // the one in use last
+  bool no_more_ = false;                                // records can be made
   std::vector<double> in_, out_, work_;
   BlockFactors factors_;
   Eigen::MatrixXd r_x_, s_x_, way_, slopes_, jacobian_, half_, hessian_;  // way_: X^T

@@ -32,32 +32,24 @@ struct Traced {
   Traced& operator/=(const Traced& b) { return *this = {number / b.number, a / b.a}; }
 };
 
-/// The comparisons since its construction, of this thread: of the difference of both sides.
+/// The comparisons since its construction, of this thread: of the difference of both sides. Not
+/// inline: static libraries have each their own copy of an inline function and its variables
+/// (tools/cmake/localise), and formulas of groups are compiled in another one.
 class Guards {
  public:
   struct Guard {
     graph::Number difference;
     bool negative;
   };
-  Guards() : outer_(current()) { current() = this; }
-  ~Guards() { current() = outer_; }
+  Guards();
+  ~Guards();
   Guards(const Guards&) = delete;
   Guards& operator=(const Guards&) = delete;
 
   const std::vector<Guard>& all() const { return all_; }
-  static bool below(const Traced& x, const Traced& y) {
-    const bool out = x.a < y.a;
-    const graph::Number difference = x.number - y.number;
-    if (current() != nullptr && !difference.constant())
-      current()->all_.push_back({difference, out});
-    return out;
-  }
+  static bool below(const Traced& x, const Traced& y);
 
  private:
-  static Guards*& current() {
-    static thread_local Guards* now = nullptr;
-    return now;
-  }
   std::vector<Guard> all_;
   Guards* outer_;
 };

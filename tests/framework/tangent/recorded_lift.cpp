@@ -273,6 +273,44 @@ TEST(RecordedLift, IsExactOfEveryRegisteredSystemThatHasFormulas) {
   EXPECT_THAT(without, testing::UnorderedElementsAre("n_trailer", "roller_racer", "snakeboard"));
 }
 
+/// Formulas of groups branch on the angle of a step: series or closed form. Steps that turn little
+/// and much in turns are those of an equation that saw nothing else, however often.
+TEST(RecordedLift, KeepsARecordOfEachBranch) {
+  constexpr double kStep = 0.5;
+  hamel::Run run = simulate("chaplygin_sleigh")
+                       .scheme("lift")
+                       .s(0.5)
+                       .step(kStep)
+                       .until(1)
+                       .solver("newton", {.tolerance = 1e-15})
+                       .build();
+  StepMap map(std::shared_ptr<const RunPlan>(std::shared_ptr<void>(), &run.driver().plan()));
+  const auto equation = RecordedLift::of(map.plan(), RecordedLift::Order::first);
+  ASSERT_NE(equation, nullptr);
+  const Eigen::VectorXd u = map.plan().setup.inputs == nullptr
+                                ? Eigen::VectorXd()
+                                : Eigen::VectorXd(map.plan().setup.inputs->at(0));
+  RecordedLift::Unknowns x;
+  for (int i = 0; i < 60; ++i) {
+    SCOPED_TRACE(i);
+    MotionState from = map.start();
+    from.xi << (i % 2 == 0 ? 0.01 : 3.0 + 0.02 * i), 0.8, 0;
+    MotionState end, alone_end;
+    ASSERT_TRUE(equation->solve(from, u, kStep, x));
+    ASSERT_TRUE(equation->end(end));
+    ASSERT_TRUE(equation->linearise(map.coordinates(end)));
+    const auto alone = RecordedLift::of(map.plan(), RecordedLift::Order::first);
+    RecordedLift::Unknowns y;
+    ASSERT_TRUE(alone->solve(from, u, kStep, y));
+    ASSERT_TRUE(alone->end(alone_end));
+    ASSERT_TRUE(alone->linearise(map.coordinates(end)));
+    Eigen::VectorXd apart;
+    ASSERT_TRUE(displacement(map.geometry(), end, alone_end, apart));
+    EXPECT_LT(apart.lpNorm<Eigen::Infinity>(), 1e-12);
+    EXPECT_LT((equation->jacobian() - alone->jacobian()).lpNorm<Eigen::Infinity>(), 1e-11);
+  }
+}
+
 /// Mechanisms: a free root on wheels with heights, a planar one with motors, a ball.
 TEST(RecordedLift, IsExactOfMechanisms) {
   for (const char* name : {"bicycle", "car", "ballbot", "kick_scooter", "tricycle"})
