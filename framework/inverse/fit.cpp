@@ -23,7 +23,8 @@ class FitSolver final : public FitDescent {
   FitSolver(FitProblem& problem, const FitRequest& request,
             const std::function<void(long, double)>& progress, const std::atomic<bool>* stop)
       : problem_(problem), request_(request), progress_(progress), stop_(stop) {
-    for (const FitUnknown& one : problem.unknowns()) numbers_.push_back({one.low, one.high});
+    for (const FitUnknown& one : problem.unknowns())
+      numbers_.emplace_back(one.low, one.high, one.guess);
     begin_sigma();
     begin(request.segments);
   }
@@ -35,7 +36,9 @@ class FitSolver final : public FitDescent {
     weigh(out);
     if (progress_) progress_(iterations_ + 1, out.r.squaredNorm());
     for (Eigen::Index j = 0; j < u_.size(); ++j) {
-      const double slope = numbers_[static_cast<size_t>(j)].slope(u_[j]);
+      const BoundedNumber& number = numbers_[static_cast<size_t>(j)];
+      const double slope = number.slope(u_[j]);
+      if (number.bounded()) out.sizes[j] = 1;
       out.J.col(j) *= slope;
       if (out.C.rows() > 0) out.C.col(j) *= slope;
     }
@@ -230,9 +233,7 @@ class FitSolver final : public FitDescent {
     // That of the last iteration, whose increment is nothing beside a deviation.
     last_.r = residuals_;
     weigh(last_);
-    // Its differences are of the right size where the system has units of its own.
-    if (problem_.has_own_units(now_) && sees_clearly(last_, x))
-      return estimate_covariance(last_, x, out);
+    if (sees_clearly(last_, x)) return estimate_covariance(last_, x, out);
     if (!problem_.jacobian(now_, TangentMotion::Carries::columns, last_)) return;
     weigh(last_);
     estimate_covariance(last_, x, out);

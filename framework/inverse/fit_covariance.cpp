@@ -15,21 +15,12 @@ constexpr double kUndetermined = 1e-7;  // singular values, of the largest
 constexpr double kClear = 1e-4;         // so that errors of 1e-10 leave six digits
 constexpr double kUnseen = 1e-9;        // changes of the residuals, of the longest
 
-// The largest change of the residuals by a relative change of one number.
-double longest_change(const Eigen::VectorXd& lengths, const Eigen::VectorXd& x) {
-  double out = 0;
-  for (Eigen::Index j = 0; j < x.size(); ++j)
-    out = std::max(out, lengths[j] * (x[j] == 0 ? 1 : std::abs(x[j])));
-  return out;
-}
-
 // A direction that the data do not see, as relative changes of length 1.
-void name_direction(const Eigen::VectorXd& direction, const Eigen::VectorXd& x, Fit& out,
-                    std::vector<bool>& blind) {
+void name_direction(const Eigen::VectorXd& direction, const Eigen::VectorXd& x,
+                    const Eigen::VectorXd& sizes, Fit& out, std::vector<bool>& blind) {
   constexpr double part = 1e-4;  // smaller ones are round-off
   Eigen::VectorXd relative = direction;
-  for (Eigen::Index j = 0; j < x.size(); ++j)
-    if (x[j] != 0) relative[j] /= std::abs(x[j]);
+  for (Eigen::Index j = 0; j < x.size(); ++j) relative[j] /= x[j] != 0 ? std::abs(x[j]) : sizes[j];
   Eigen::Index largest = 0;
   relative.cwiseAbs().maxCoeff(&largest);
   relative /= std::copysign(relative.norm(), relative[largest]);
@@ -45,14 +36,16 @@ void name_direction(const Eigen::VectorXd& direction, const Eigen::VectorXd& x, 
 // stays as it is. False where there is one, as seen with `unseen`.
 bool find_lengths(const FitLinear& at, const Eigen::VectorXd& x, double unseen,
                   Eigen::VectorXd& lengths) {
-  lengths = scales_of_columns(at.J);
-  const Eigen::VectorXd norms = at.J.leftCols(x.size()).colwise().norm();
-  const double longest = lengths.maxCoeff();
+  lengths = scales_of_columns(at);
+  const Eigen::Index q = x.size();
+  const Eigen::VectorXd changes =
+      at.J.leftCols(q).colwise().norm().transpose().cwiseProduct(at.sizes.head(q));
+  const double longest = lengths.cwiseProduct(at.sizes).maxCoeff(),
+               of_numbers = std::max(1e-300, changes.maxCoeff());
   bool all = true;
-  for (Eigen::Index j = 0; j < x.size(); ++j) {
-    const double size = x[j] == 0 ? 1 : std::abs(x[j]);
-    const bool seen = norms[j] * size > unseen * std::max(1e-300, longest_change(norms, x));
-    lengths[j] = seen && norms[j] > 0 ? norms[j] : longest;
+  for (Eigen::Index j = 0; j < q; ++j) {
+    const bool seen = changes[j] > unseen * of_numbers;
+    lengths[j] = (seen ? changes[j] : longest) / at.sizes[j];
     all = all && seen;
   }
   return all;
@@ -86,7 +79,7 @@ void estimate_covariance(const FitLinear& at, const Eigen::VectorXd& x, Fit& out
     }
     // Of length 1 as it is scaled: no change of the numbers, but of what a node is projected from.
     if (direction.cwiseProduct(lengths.head(q)).norm() > 1e-6)
-      name_direction(direction, x, out, blind);
+      name_direction(direction, x, at.sizes, out, blind);
   }
   for (Eigen::Index i = 0; i < q; ++i) {
     const auto row = static_cast<size_t>(i);

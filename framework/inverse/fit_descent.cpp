@@ -16,12 +16,12 @@ constexpr double kRankOfRows = 1e-9;     // equations that depend on each other
 
 }  // namespace
 
-Eigen::VectorXd scales_of_columns(const Eigen::MatrixXd& J) {
-  Eigen::VectorXd out = J.colwise().norm();
+Eigen::VectorXd scales_of_columns(const FitLinear& at) {
+  Eigen::VectorXd out = at.J.colwise().norm().transpose().cwiseProduct(at.sizes);
   const double longest = out.size() == 0 ? 0 : out.maxCoeff();
   for (double& one : out)
     if (!(one > 1e-12 * longest)) one = longest > 0 ? longest : 1;
-  return out;
+  return out.cwiseQuotient(at.sizes);
 }
 
 FitStep::FitStep(const FitLinear& at, const Eigen::VectorXd& scales) : at_(at), scales_(scales) {
@@ -104,7 +104,7 @@ Eigen::MatrixXd FitStep::directions() const {
 // Beside the numbers, as their columns scale them.
 bool FitDescent::is_small(const FitLinear& at, const Eigen::VectorXd& x) const {
   const Eigen::VectorXd p = numbers();
-  const Eigen::VectorXd scales = scales_of_columns(at.J).head(p.size());
+  const Eigen::VectorXd scales = scales_of_columns(at).head(p.size());
   const double size = scales.cwiseProduct(p).norm();
   return p.size() > 0 && scales.cwiseProduct(x.head(p.size())).norm() <= kSmall * size;
 }
@@ -137,7 +137,7 @@ bool FitDescent::search(const FitStep& step, const FitLinear& at, bool& settled)
     if (n == 0) first_fall = fall;
     if (n == 0) small = is_small(at, x);
     settled = cost - expected <= kExpectedFall * merit && same;
-    const double size = (scales_of_columns(at.J).cwiseProduct(x)).norm();
+    const double size = (scales_of_columns(at).cwiseProduct(x)).norm();
     if (try_increment(x, r, c) &&
         takes(merit - 0.5 * r.squaredNorm() - penalty_ * step.infeasible(c), fall))
       return true;
@@ -159,7 +159,7 @@ FitDescent::End FitDescent::descend(int iterations) {
     if (stopped()) return End::stopped;
     if (!linearise(at)) return stopped() ? End::stopped : End::no_derivative;
     ++iterations_;
-    const Eigen::VectorXd now = scales_of_columns(at.J);
+    const Eigen::VectorXd now = scales_of_columns(at);
     if (longest.size() != now.size()) longest = now;
     longest = longest.cwiseMax(now);
     const FitStep step(at, longest);

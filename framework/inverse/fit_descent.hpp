@@ -21,10 +21,11 @@ namespace hamel {
 struct FitLinear {
   Eigen::VectorXd r, c;
   Eigen::MatrixXd J, C;
+  Eigen::VectorXd sizes;  // of increments: what columns of different units are compared by
 };
 
 /// Columns that are scaled so that J has columns of length 1, as far as they have a length.
-Eigen::VectorXd scales_of_columns(const Eigen::MatrixXd& J);
+Eigen::VectorXd scales_of_columns(const FitLinear& at);
 
 /// The linear problem of one iteration.
 class FitStep {

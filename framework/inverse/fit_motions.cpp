@@ -130,9 +130,14 @@ bool FitProblem::jacobian(const FitPoint& at, TangentMotion::Carries digits, Fit
   out.c.resize(all - numbers);
   out.J.setZero(data(), all);
   out.C.setZero(all - numbers, all);
+  out.sizes.setOnes(all);
   Eigen::Index next = 0, joined = 0;
   Eigen::VectorXd here;
   Eigen::MatrixXd slopes;
+  const auto take_sizes = [&](const std::vector<Eigen::Index>& columns, TangentMotion& motion) {
+    for (size_t v = 0; v < columns.size(); ++v)
+      out.sizes[columns[v]] = motion.sizes()[static_cast<Eigen::Index>(v)];
+  };
   const auto row = [&](size_t r, size_t j, size_t k, TangentMotion& motion) {
     Series& series = series_[r];
     const auto observed = [&](MovedMotion& of, const MotionState& state, Eigen::VectorXd& values) {
@@ -140,6 +145,7 @@ bool FitProblem::jacobian(const FitPoint& at, TangentMotion::Carries digits, Fit
     };
     if (!motion.derivative(motion.now(), observed, here, slopes) || !here.allFinite()) return false;
     const std::vector<Eigen::Index> columns = columns_of(at, r, j);
+    if (j == 0) take_sizes(columns, motion);
     for (size_t i = 0; i < series.columns.size(); ++i) {
       const double datum = series.recording->values[series.columns[i]][k];
       if (!std::isfinite(datum)) continue;
@@ -166,6 +172,7 @@ bool FitProblem::jacobian(const FitPoint& at, TangentMotion::Carries digits, Fit
         out.C.block(joined + n, columns[v], count - n, 1) += sign * (inverse * column.tail(n));
       }
     };
+    take_sizes(columns_of(at, r, j), begins);
     add(begins.now().columns, j, 1);
     add(ends.now().columns, j - 1, -1);
     out.c.segment(joined, count) = gap;

@@ -4,7 +4,8 @@
 
 #include <hamel/framework/inverse/fit_problem.hpp>
 #include <hamel/framework/io/errors.hpp>
-#include <hamel/framework/mechanics/natural_units.hpp>
+#include <hamel/framework/run/run/driver.hpp>
+#include <hamel/framework/tangent/displacement_units.hpp>
 
 namespace hamel {
 namespace {
@@ -66,11 +67,8 @@ class FitProblem::NodeChoice {
         values_(problem.values_of(at.x, static_cast<int>(r))),
         at_theta_("fit", *problem.variables_, values_),
         duration_(std::max(series_.recording->t.back() - at_theta_.plan().config.from, 1e-300)) {
-    const std::vector<double> units =
-        natural_units(components_of(*at_theta_.plan().system), *at_theta_.plan().setup.mechanics,
-                      at_theta_.start().g.data());
-    units_ =
-        Eigen::Map<const Eigen::VectorXd>(units.data(), static_cast<Eigen::Index>(units.size()));
+    const Run run = at_theta_.run_of(*problem.variables_, values_);
+    units_ = displacement_units(at_theta_.map(), at_theta_.start(), run.driver().next_step());
   }
 
   std::vector<FitNode> choose(const std::optional<int>& segments) {
@@ -107,7 +105,7 @@ class FitProblem::NodeChoice {
     bool linearise(FitLinear& out) override {
       out.C.resize(0, 0);
       out.c.resize(0);
-      return of_.residuals(now_, row_, end_, out.r, &out.J) && remember(now_, out.r, &out.J);
+      return of_.residuals(now_, row_, end_, out.r, &out) && remember(now_, out.r, &out.J);
     }
     bool try_increment(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::VectorXd& c) override {
       c.resize(0);
@@ -214,8 +212,10 @@ class FitProblem::NodeChoice {
     return false;
   }
 
+  // linear: J and sizes of its increments, where they are wanted.
   bool residuals(const MotionState& state, size_t row, size_t end, Eigen::VectorXd& r,
-                 Eigen::MatrixXd* J) {
+                 FitLinear* linear) {
+    Eigen::MatrixXd* J = linear == nullptr ? nullptr : &linear->J;
     std::vector<double> found;
     std::vector<Eigen::VectorXd> slopes_found;
     try {
@@ -223,6 +223,7 @@ class FitProblem::NodeChoice {
       TangentMotion now = motion(
           state, directions,
           J != nullptr ? TangentMotion::Carries::ten_digits : TangentMotion::Carries::values);
+      if (linear != nullptr) linear->sizes = now.sizes();
       series_.observed.clear();
       const auto observed = [&](MovedMotion& of, const MotionState& at, Eigen::VectorXd& values) {
         series_.observed(of, at, values);
@@ -269,14 +270,6 @@ void FitProblem::choose_nodes(const std::vector<double>& sigma, const std::vecto
   out.nodes.clear();
   for (size_t r = 0; r < series_.size(); ++r)
     out.nodes.push_back(NodeChoice(*this, sigma, scales, out, r).choose(segments));
-}
-
-bool FitProblem::has_own_units(const FitPoint& at) const {
-  const MovedMotion motion("fit", *variables_, values_of(at.x, 0));
-  const RunPlan& plan = motion.plan();
-  const std::vector<double> scales =
-      own_scales(components_of(*plan.system), *plan.setup.mechanics, motion.start().g.data());
-  return std::ranges::count(scales, 0.) == 0;
 }
 
 }  // namespace hamel

@@ -73,8 +73,6 @@ class FitProblem {
   std::vector<Table> tables(const Eigen::VectorXd& residuals,
                             const std::vector<double>& sigma) const;
   Eigen::VectorXd values_of(const Eigen::VectorXd& x, int recording) const;
-  /// Has the system at the point of the first recording units of its own (natural_units.hpp)?
-  bool has_own_units(const FitPoint& at) const;
 
  private:
   struct Series {

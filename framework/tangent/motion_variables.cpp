@@ -161,7 +161,8 @@ Simulation MotionVariables::with(const Eigen::VectorXd& values) const {
 namespace {
 
 // From all xi with A xi = b and the given components that which is nearest to the start's:
-//   xi = xi0 + I^-1 C^T (C I^-1 C^T)^+ (d - C xi0),  C = (A; e_j), d = (b; values).
+//   xi = xi0 + I^-1 C^T (C I^-1 C^T)^+ (d - C xi0),  C = (A; e_j), d = (b; values),
+// rows of length 1 in I^-1, so that what is left of them is the root of an energy.
 void give_velocity(const RunPlan& plan, const std::vector<std::pair<size_t, double>>& given,
                    Start& start) {
   const Mechanics& mechanics = *plan.setup.mechanics;
@@ -182,11 +183,19 @@ void give_velocity(const RunPlan& plan, const std::vector<std::pair<size_t, doub
     right[k + j] = value;
   }
   Eigen::Map<Eigen::VectorXd> xi(start.velocity.data(), n);
+  const Eigen::LLT<Eigen::MatrixXd> factors = inertia.llt();
+  for (Eigen::Index j = 0; j < k + c; ++j) {
+    const Eigen::VectorXd row = all.row(j).transpose();
+    const double length = std::sqrt(row.dot(factors.solve(row)));
+    if (!(length > 0)) continue;
+    all.row(j) /= length;
+    right[j] /= length;
+  }
+  const double size = std::sqrt(xi.dot(inertia * xi)) + right.lpNorm<Eigen::Infinity>();
   right -= all * xi;
-  const Eigen::MatrixXd reach = inertia.llt().solve(all.transpose());
+  const Eigen::MatrixXd reach = factors.solve(all.transpose());
   const Eigen::VectorXd move = reach * (all * reach).completeOrthogonalDecomposition().solve(right);
-  if (!((all * move - right).lpNorm<Eigen::Infinity>() <=
-        1e-9 * (1 + right.lpNorm<Eigen::Infinity>())))
+  if (!((all * move - right).lpNorm<Eigen::Infinity>() <= 1e-9 * size))
     throw ConfigError({fmt::format(
         "start: the constraint rows of {} leave no choice of these components of the velocity",
         plan.system->name)});

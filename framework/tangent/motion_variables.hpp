@@ -35,6 +35,11 @@ class MotionVariables {
   const std::vector<MotionVariable>& all() const { return all_; }
   std::size_t size() const { return all_.size(); }
   Eigen::VectorXd values() const;
+  /// The displacement (eta; dxi) of a factor of one; empty for other variables.
+  Eigen::VectorXd direction(const MotionVariable& one) const {
+    if (one.kind != MotionVariable::Kind::direction) return {};
+    return directions_.col(static_cast<Eigen::Index>(one.index));
+  }
   /// Parameters and inputs of a motion that begins at another time and state, and factors of
   /// displacements (eta; dxi) of this state, which are 0.
   MotionVariables from(double t, const Start& start, const Eigen::MatrixXd& directions) const;

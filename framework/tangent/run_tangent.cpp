@@ -35,8 +35,7 @@ bool leads_to(TangentMotion& motion, const Snapshot& now) {
   if (!displacement(*plan.geometry, motion.now().state, there, off)) return false;
   constexpr double round_off = 1e-8, steps = 1e3;
   const double error = plan.config.chooses_steps() ? steps * plan.setup.errors.at(0) : 0;
-  const double scale = 1 + there.xi.lpNorm<Eigen::Infinity>();
-  return off.lpNorm<Eigen::Infinity>() <= std::max(round_off, error) * scale;
+  return motion.natural_length(motion.now().state, off) <= std::max(round_off, error);
 }
 
 }  // namespace
@@ -64,7 +63,7 @@ RunTangent Run::tangent() {
       there.xi = Eigen::Map<const Eigen::VectorXd>(made.velocity.data(), n);
       return displacement(motion.motion().geometry(), start, there, by);
     };
-    constexpr double e = 0x1p-8;
+    const double e = 0x1p-8 / motion.natural_length(start, Eigen::VectorXd::Unit(2 * n, j));
     if (!ThreeDifferences::derivative(ThreeDifferences::fine, e, moved, column))
       throw ConfigError({"tangent: the start has no derivative"});
     columns.col(j) = column;

@@ -80,7 +80,10 @@ Sensitivities Simulation::sensitivities(const std::vector<std::string>& names) c
   Sensitivities out;
   for (const MotionVariable& one : variables.all()) out.names.push_back(one.name);
   SensitivityRows rows(*motion.motion().plan().system, out.names);
-  Eigen::VectorXd values;
+  Eigen::VectorXd values, first = Eigen::VectorXd::Zero(variables.values().size());
+  for (Eigen::Index j = 0; j < first.size(); ++j)
+    if (!variables.all()[static_cast<size_t>(j)].of_system())
+      first[j] = motion.natural_length(motion.now().state, motion.now().columns.col(j));
   Eigen::MatrixXd fine, coarse;
   const bool given_times = !config().completed().recorded_times().empty();
   for (const double t : times_of_rows(*this)) {
@@ -106,8 +109,9 @@ Sensitivities Simulation::sensitivities(const std::vector<std::string>& names) c
         error = std::max(error, off(i, j));
       }
     for (Eigen::Index j = 0; j < now.columns.cols(); ++j)
-      if (!variables.all()[static_cast<size_t>(j)].of_system())
-        out.growth = std::max(out.growth, now.columns.col(j).lpNorm<Eigen::Infinity>());
+      if (first[j] > 0)
+        out.growth =
+            std::max(out.growth, motion.natural_length(now.state, now.columns.col(j)) / first[j]);
     if (out.growth > kLargestGrowth) {
       out.status = {false, 0, t, 0,
                     fmt::format("derivatives by the start have grown to {:.2g}, more than {:.0e}: "

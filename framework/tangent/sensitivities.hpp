@@ -37,7 +37,7 @@ struct Sensitivities {
   /// Where an event ended the run: derivatives of its time, by each name. The last row, where rows
   /// are nodes, is the state there, whenever that is.
   std::vector<double> end_time;
-  double growth = 0;  // the largest derivative by a start, in its own units
+  double growth = 0;  // of a displacement by a number of the start, in natural units
   Status status;      // of the run and its tangent; rows before a failure are kept
   int steps = 0;
 };

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include <hamel/framework/io/errors.hpp>
-#include <hamel/framework/mechanics/natural_units.hpp>
+#include <hamel/framework/tangent/displacement_units.hpp>
 #include <hamel/framework/tangent/step_differences.hpp>
 
 namespace hamel {
@@ -16,6 +16,7 @@ namespace {
 constexpr double kDisplacement = 0x1p-6;        // the largest of a difference, in natural units
 constexpr double kPlainDisplacement = 0x1p-13;  // and of a plain one, which is a quarter of it
 constexpr double kRepeats = 1e-8;               // a repeated step, in natural units
+constexpr double kStepOfZero = 1e-2;            // of a displacement, in one step
 
 Status no_tangent(double t, const std::string& why) {
   return {false, 0, t, 0, fmt::format("no tangent of the step from t = {:.10g}: {}", t, why)};
@@ -38,17 +39,17 @@ TangentMotion::TangentMotion(const std::string& what, const MotionVariables& var
       measure_(carries == Carries::errors),
       plain_(carries == Carries::ten_digits) {
   const RunPlan& plan = motion_.plan();
-  const std::vector<double> units =
-      natural_units(components_of(*plan.system), *plan.setup.mechanics, motion_.start().g.data());
-  units_ = Eigen::Map<const Eigen::VectorXd>(units.data(), static_cast<Eigen::Index>(units.size()));
   node_.state = motion_.start();
+  units_ = displacement_units(motion_.map(), node_.state, run_.driver().next_step());
   if (carries != Carries::values && has_held_inputs(plan))
     equation_ = RecordedLift::of(plan, RecordedLift::Order::first);
+  if (equation_ != nullptr) equation_->set_units(units_);
   if (carries == Carries::values) {
     begin_with(Eigen::MatrixXd(2 * units_.size(), 0));
     return;
   }
   moved_.resize(variables.size());
+  sizes_.resize(values.size());
   for (size_t i = 0; i < variables.size(); ++i) move_variable(what, variables, values, i);
   begin(variables, values);
 }
@@ -60,12 +61,10 @@ void TangentMotion::move_variable(const std::string& what, const MotionVariables
   MovedVariable& moved = moved_[i];
   const auto at = static_cast<Eigen::Index>(i);
   const double now = values[at];
-  moved.size = largest() * (now == 0 ? 1 : std::abs(now));
-  if (!one.of_system()) {
-    const bool angle = one.unit.starts_with("rad");
-    moved.size = largest() * (now == 0 || angle ? 1 : std::max(1e-3, std::abs(now)));
-    return;
-  }
+  if (!one.of_system()) sizes_[at] = natural_change(one, variables.direction(one));
+  else sizes_[at] = now == 0 ? change_of_zero(what, variables, values, at) : std::abs(now);
+  moved.size = std::exp2(std::ilogb(largest() * sizes_[at]));  // sums with it have less round-off
+  if (!one.of_system()) return;
   constexpr int tries = 12;
   for (int n = 0; n < tries; ++n) {
     try {
@@ -127,16 +126,71 @@ const std::array<double, 3>& TangentMotion::weights() const {
   return plain_ ? ThreeDifferences::plain : ThreeDifferences::fine;
 }
 
-// The factor of a column that makes it a displacement of largest().
-double TangentMotion::size_of(const MotionState& at, const Eigen::VectorXd& column,
-                              double h) const {
+// Velocities beside the motion's, or so slow a one that nothing moves in a step.
+double TangentMotion::length_of(const MotionState& at, const Eigen::VectorXd& column,
+                                double h) const {
   const Eigen::Index n = at.xi.size();
   const double still = 1e-3 / std::abs(h);
   const double rate = std::max(at.xi.cwiseQuotient(units_).lpNorm<Eigen::Infinity>(), still);
-  const double size =
-      std::max(column.head(n).cwiseQuotient(units_).lpNorm<Eigen::Infinity>(),
-               column.tail(n).cwiseQuotient(units_).lpNorm<Eigen::Infinity>() / rate);
-  return size > 0 ? largest() / size : 0;
+  return std::max(column.head(n).cwiseQuotient(units_).lpNorm<Eigen::Infinity>(),
+                  column.tail(n).cwiseQuotient(units_).lpNorm<Eigen::Infinity>() / rate);
+}
+
+// The factor of a column that makes it a displacement of largest().
+double TangentMotion::size_of(const MotionState& at, const Eigen::VectorXd& column,
+                              double h) const {
+  const double length = length_of(at, column, h);
+  return length > 0 ? largest() / length : 0;
+}
+
+// Change of a number of the start that is a displacement of length 1.
+double TangentMotion::natural_change(const MotionVariable& one,
+                                     const Eigen::VectorXd& direction) const {
+  const Eigen::Index n = units_.size();
+  const auto index = static_cast<Eigen::Index>(one.index);
+  Eigen::VectorXd column = direction;
+  if (one.kind == MotionVariable::Kind::velocity) column = Eigen::VectorXd::Unit(2 * n, n + index);
+  if (one.kind == MotionVariable::Kind::coordinate) {
+    if (one.unit.starts_with("rad")) return 1;
+    Eigen::Index i = motion_.geometry().columns() == n ? index : n;
+    const std::vector<Component> components = components_of(*motion_.plan().system);
+    for (Eigen::Index k = n; i == n && k-- > 0;)
+      if (components[static_cast<size_t>(k)].unit == one.unit + "/s") i = k;
+    return i < n ? units_[i] : 1;
+  }
+  const double length = natural_length(node_.state, column);
+  return length > 0 ? 1 / length : 1;
+}
+
+// A change of a parameter or an input that is 0, whose size is not known: what displaces the end of
+// a step by a part of a unit, as far as one step feels it; else 1.
+double TangentMotion::change_of_zero(const std::string& what, const MotionVariables& variables,
+                                     Eigen::VectorXd values, Eigen::Index at) {
+  constexpr int tries = 40;
+  constexpr double factor = 1e3, near = 2, round_off = 1e-11;
+  const MotionState& start = node_.state;
+  const double h = run_.driver().next_step(), t = start.time + h;
+  MotionState end, beside;
+  if (!motion_.map().step(start, t, end).ok) return 1;
+  double out = 1;
+  for (int n = 0; n < tries; ++n) {
+    values[at] = out * largest();
+    Eigen::VectorXd by;
+    bool found = false;
+    try {
+      MovedMotion other(what, variables, values);
+      found = other.map().step(start, t, beside).ok &&
+              displacement(motion_.geometry(), end, beside, by);
+    } catch (const ConfigError&) {  // out of range
+    }
+    const double length = found ? length_of(start, by, h) : HUGE_VAL;
+    if (!std::isfinite(length)) out /= factor;
+    else if (length < round_off) out *= factor;
+    else if (length > near * kStepOfZero * largest() || near * length < kStepOfZero * largest())
+      out *= kStepOfZero * largest() / length;
+    else return out;
+  }
+  return 1;
 }
 
 bool TangentMotion::step_beside(MovedMotion& motion, const MotionState& from, const MotionState& to,

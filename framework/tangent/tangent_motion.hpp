@@ -69,6 +69,12 @@ class TangentMotion {
                   Eigen::MatrixXd& out);
 
   MovedMotion& motion() { return motion_; }
+  /// Natural changes of the variables: a parameter's own size, a start's by displacement_units().
+  const Eigen::VectorXd& sizes() const { return sizes_; }
+  /// A displacement (eta; dxi) of a state in natural units.
+  double natural_length(const MotionState& at, const Eigen::VectorXd& column) const {
+    return length_of(at, column, run_.driver().next_step());
+  }
   int steps() const { return steps_; }
 
   /// Columns that are not those of the variables: of a state, one for each.
@@ -78,7 +84,11 @@ class TangentMotion {
   // The largest displacement of a difference, in natural units, and the weights of its parts.
   double largest() const;
   const std::array<double, 3>& weights() const;
+  double length_of(const MotionState& at, const Eigen::VectorXd& column, double h) const;
   double size_of(const MotionState& at, const Eigen::VectorXd& column, double h) const;
+  double natural_change(const MotionVariable& one, const Eigen::VectorXd& direction) const;
+  double change_of_zero(const std::string& what, const MotionVariables& variables,
+                        Eigen::VectorXd values, Eigen::Index at);
   void move_variable(const std::string& what, const MotionVariables& variables,
                      const Eigen::VectorXd& values, size_t i);
   void begin(const MotionVariables& variables, const Eigen::VectorXd& values);
@@ -108,6 +118,7 @@ class TangentMotion {
   std::unique_ptr<RecordedLift> equation_;
   RecordedLift::Unknowns unknowns_;
   Eigen::VectorXd units_;  // of displacements
+  Eigen::VectorXd sizes_;  // of the variables
   TangentState node_, shown_;
   std::string failure_;  // of a step beside the motion
   bool side_ = false, measure_, plain_, projects_ = false;
