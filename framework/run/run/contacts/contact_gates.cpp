@@ -204,6 +204,14 @@ void ContactKernel::graze(int i, double t) {
                   said, gap, t));
 }
 
+// Is a dip behind an opening the round-off of a gap that begins with its third derivative, as of a
+// ball that leaves a dome?
+bool ContactKernel::leaves(int i, double opened, double dip) {
+  if (contact(i).mode != ContactMode::open || followed(i).opened != opened) return false;
+  gates(dip, one_);
+  return dynamics().gap(i) > -kGrazes * followed(i).height;
+}
+
 // A gate's crossing between the last two of three looks, the first of them NaN where there are two:
 // a change of its sign, or a dip.
 std::optional<double> ContactKernel::crossing(int contact, size_t which, ValueAt first,
@@ -217,6 +225,7 @@ std::optional<double> ContactKernel::crossing(int contact, size_t which, ValueAt
     if (which == 0) graze(contact, least->time);
     return {};
   }
+  if (which == 0 && leaves(contact, first.time, least->time)) return {};
   return locate(contact, which, least->time < before.time ? first : before, *least);
 }
 

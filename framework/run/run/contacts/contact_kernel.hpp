@@ -96,6 +96,7 @@ class ContactKernel final : public KernelOfContacts {
   double gate(int contact, size_t which, double t);
   double locate(int contact, size_t which, ValueAt before, ValueAt after);
   void graze(int i, double t);
+  bool leaves(int i, double opened, double dip);
   std::optional<double> crossing(int contact, size_t which, ValueAt first, ValueAt before,
                                  ValueAt now);
   std::optional<Found> find(double from, double to);
