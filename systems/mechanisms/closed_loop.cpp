@@ -20,6 +20,8 @@ double Loop::open_by(const Tree& tree) const {
   return (tree.in_world(b).apply(at) - tree.in_world(a).apply(at)).norm();
 }
 
+Vec3 Loop::touch(const Tree& tree) const { return pair_point(*this, tree).point; }
+
 void Loop::rows(const Tree& tree, Row* out) const {
   const auto seen = [&](int link, const Vec3& u) -> Vec3 {
     return tree.root_in_world(link).rotation.transpose() * u;

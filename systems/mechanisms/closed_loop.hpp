@@ -19,6 +19,7 @@ struct Loop {
   Vec3 at = Vec3::Zero(), axis = Vec3::Zero();  // axis 0: a ball joint
 
   std::optional<RollingSurface> surface = {};
+  bool slips = false;  // may the ball slide on it, and leave it?
 
   bool is_hinge() const { return !axis.isZero(0); }
   size_t row_count() const { return is_hinge() ? 5 : 3; }
@@ -26,6 +27,8 @@ struct Loop {
   void rows(const Tree& tree, Row* out) const;
   /// How far it is from closed, m.
   double open_by(const Tree& tree) const;
+  /// The point in which a ball touches its surface, in the world.
+  Vec3 touch(const Tree& tree) const;
 };
 
 }  // namespace hamel::mechanisms

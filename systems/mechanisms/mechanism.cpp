@@ -53,8 +53,7 @@ void Mechanism::contact(const std::string& kind, const std::string& name, const 
   if (radius != options.values.end() && radius->second.size() == 1) pair.radius = radius->second[0];
   pair.inside = !options.inside.empty();
   pair.both = pair.inside && !options.on.empty();
-  pair.slips = options.friction || options.restitution || options.load || options.unilateral ||
-               options.static_friction || options.tangential_restitution || options.share;
+  pair.contact = options;
   loops_.push_back(std::move(pair));
 }
 void Mechanism::wheel(const std::string& name, const std::string& body, const WheelOptions& o) {

@@ -197,7 +197,8 @@ class HAMEL_API Mechanism {
     std::string a, b;
     std::string kind = "loop";  // "ball": one of b that rolls on or inside a, with this radius
     double radius = 0;
-    bool inside = false, both = false, slips = false;  // both: on and inside; slips: with friction
+    bool inside = false, both = false;  // both: on and inside
+    ContactOptions contact = {};        // of a ball: its friction
   };
   struct CouplingPart : Part, CouplingOptions {};
   struct WallPart : Part, WallOptions {};

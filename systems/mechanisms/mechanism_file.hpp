@@ -22,7 +22,8 @@
 //                            # name (left out: the body's), body, at; axle, radius, angle, crown;
 //                            # along; semi_axes; friction, restitution, load [N], unilateral;
 //                            # static_friction, tangential_restitution, share;
-//                            # of a ball: on or inside = "body", whose sphere or cylinder it rolls
+//                            # of a ball: on or inside = "body", whose sphere or cylinder it
+//                            # touches instead of the ground
 //   [[loop]]                 # name, a, b, at, axis
 //   [[coupling]]             # name (left out: the joint's); joint, to, ratio, offset: joint =
 //   joint = "left knuckle"   # ratio * to + offset; or formula = "...", of joint coordinates, or

@@ -116,9 +116,9 @@ class Multibody final : public Mechanics,
     tree_.place(g);
     return tree_;
   }
-  /// The force of the kept rows of a contact (counted as in all_rows()) with these multipliers, in
-  /// the world.
-  Vec3 reaction(size_t contact, const double* g, std::span<const double> multipliers) const;
+  /// The force of the kept rows of a contact with these multipliers, in the world.
+  Vec3 reaction(const std::string& part, const double* g,
+                std::span<const double> multipliers) const;
   /// phi of all rows of each(), 0 where it is none, and their A.
   void look(double t, const double* g, Matrix a, Vector b, Vector phi) const;
   /// Measurement of a sensor at a point of a link as drawn (programs/sensor_formulas.hpp).

@@ -87,9 +87,8 @@ std::vector<Agreement> Multibody::find_agreements(
   return mechanisms::find_agreements(some, states, velocity_units(inertia));
 }
 
-Vec3 Multibody::reaction(size_t contact, const double* g,
+Vec3 Multibody::reaction(const std::string& part, const double* g,
                          std::span<const double> multipliers) const {
-  const std::string& part = rows_.contacts[contact].name;
   const Tree& at = tree(g);
   Vec3 force = Vec3::Zero();
   rows_.each(at, 0, [&](size_t i, const Row& row) {

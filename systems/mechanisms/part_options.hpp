@@ -52,7 +52,7 @@ struct ContactOptions {
   // Friction while it rolls, not less than friction; restitution of the slip; the part of the loads
   // that it has where they are `stated` (Mechanism::distribution).
   std::optional<double> static_friction = {}, tangential_restitution = {}, share = {};
-  // For a ball: the body on whose sphere or cylinder, or inside it, it rolls; neither: the ground.
+  // For a ball: the body whose sphere or cylinder it touches, on or inside it; neither: the ground.
   std::string on = {}, inside = {};
 };
 struct WheelOptions {

@@ -39,6 +39,7 @@ std::vector<RowInfo> ConstraintRows::info() const {
     if (loop.surface) {
       for (const int i : {1, 2}) add(loop.name, i, "rolls without slipping", false);
       add(loop.name, 3, "touches the other body", true, true);
+      for (size_t i = 1; i <= 3; ++i) out[out.size() - i].slips = loop.slips;
       continue;
     }
     for (int i = 1; i <= 3; ++i) add(loop.name, i, "the points of the joint coincide", true);

@@ -187,8 +187,6 @@ TEST(RollingPairs, RefusesWhatDoesNotFit) {
               HasSubstr("inside: a ball of radius 0.6 m has no room in 'fixed', of radius 0.5 m"));
   EXPECT_THAT(said(on, sphere, {.at = on, .radius = kBall, .on = "fixed", .inside = "fixed"}),
               HasSubstr("expected one of on and inside"));
-  EXPECT_THAT(said(on, sphere, {.at = on, .radius = kBall, .friction = 0.3, .on = "fixed"}),
-              HasSubstr("a ball that touches another body rolls without slipping"));
   EXPECT_THAT(said(on, sphere, {.at = on, .on = "fixed"}),
               HasSubstr("ball 'contact': radius: got 0, expected above 0"));
   EXPECT_THAT(said(on, sphere, {.at = on, .radius = kBall, .on = "it"}),

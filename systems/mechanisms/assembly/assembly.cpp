@@ -113,7 +113,7 @@ ConstraintRows Assembly::rows() {
       if (const std::string flaw = model->flaw(); !flaw.empty()) wrong(part, part.kind, flaw);
       out.contacts.push_back({part.name, model, link, vec(part.at), 0, part.friction.has_value()});
     }
-    check_friction(part);
+    check_friction(part, part.kind, part);
   }
   for (const auto& part : parts_.loops_) {
     const Vec3 axis = vec(part.axis);
@@ -123,7 +123,9 @@ ConstraintRows Assembly::rows() {
     if (out.loops.back().a == out.loops.back().b && body_links_.contains(part.a) &&
         body_links_.contains(part.b))
       wrong(part, part.kind, fmt::format("'{}' and '{}' are one body", part.a, part.b));
-    if (part.kind != "loop") out.loops.back().surface = surface(part);
+    if (part.kind == "loop") continue;
+    out.loops.back().surface = surface(part);
+    out.loops.back().slips = part.contact.friction.has_value();
   }
   out.couplings = couplings();
   std::ranges::move(slipping_couplings(), std::back_inserter(out.couplings));

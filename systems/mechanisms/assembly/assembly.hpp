@@ -88,9 +88,9 @@ class Assembly {
   std::optional<mechanisms::Coupling> gear(const Mechanism::CouplingPart& part);
   mechanisms::Forces forces();
   // Contacts that slide and open (assembly_contacts.cpp).
-  void check_friction(const Mechanism::ContactPart& part);
+  void check_friction(const Part& part, const std::string& kind, const ContactOptions& options);
   void check_joint_friction(const Mechanism::JointPart& part);
-  void check_share(const Mechanism::ContactPart& part);
+  void check_share(const Part& part, const std::string& kind, const ContactOptions& options);
   void check_distribution();
   void check_brakes();
   /// Dry friction, brakes and stops of joints, and walls, as couplings that do not always hold.
@@ -101,7 +101,9 @@ class Assembly {
   /// The laws of the kept rows.
   void state_contacts(const mechanisms::Multibody& system);
   static int kept_place(const mechanisms::Multibody& system, size_t row);
-  void add_law(const mechanisms::Multibody& system, size_t contact, size_t row, double load);
+  /// Law of a contact whose rows, the last of them its height, begin at `row`.
+  void add_law(const mechanisms::Multibody& system, const std::string& name,
+               const ContactOptions& options, size_t row, size_t rows, double load);
   void add_law(const mechanisms::Coupling& coupling, int place);
   /// Normal forces of contacts without a height, N: given, or of statics in the drawn pose.
   std::vector<double> loads(const mechanisms::Multibody& system);
@@ -117,11 +119,13 @@ class Assembly {
   void check_contacts(const mechanisms::Multibody& system);
   std::vector<mechanisms::RowLabel> rows_in_words(
       const std::vector<mechanisms::RowInfo>& rows) const;
-  void look_at_redundant(const mechanisms::Redundancy& redundancy,
+  /// slipping: rows of contacts that constrain, where they hold.
+  void look_at_redundant(const mechanisms::Redundancy& redundancy, const std::vector<int>& slipping,
                          const std::vector<mechanisms::RowInfo>& words);
   void look_at_repeat(int row, const mechanisms::Repeat& repeat,
                       const std::vector<mechanisms::RowLabel>& rows, bool drop);
   void look_at_idle_loops(const mechanisms::Redundancy& redundancy,
+                          const std::vector<int>& slipping,
                           const std::vector<mechanisms::RowInfo>& words, bool drop);
   std::vector<double> start_configuration(const mechanisms::Multibody& system,
                                           const mechanisms::Starts& starts) const;

@@ -103,7 +103,7 @@ void Assembly::check_contacts(const Multibody& system) {
   for (size_t i = 0; i < rows.loops.size(); ++i) {
     const Loop& loop = rows.loops[i];
     const double apart = loop.open_by(tree);
-    if (std::abs(apart) < kTouching) continue;
+    if (std::abs(apart) < kTouching || (loop.slips && apart > 0)) continue;
     const auto& part = parts_.loops_[i];
     wrong(part, part.kind,
           loop.surface

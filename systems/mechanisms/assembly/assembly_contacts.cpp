@@ -18,37 +18,38 @@ bool is_size(const std::optional<double>& value) {
 
 }  // namespace
 
-void Assembly::check_friction(const Mechanism::ContactPart& part) {
+void Assembly::check_friction(const Part& part, const std::string& kind,
+                              const ContactOptions& options) {
   const auto size = [&](const char* what, const std::optional<double>& value) {
     if (!is_size(value))
-      wrong(part, part.kind, fmt::format("{}: got {}, expected at least 0", what, *value));
+      wrong(part, kind, fmt::format("{}: got {}, expected at least 0", what, *value));
   };
-  size("friction", part.friction);
-  size("load", part.load);
-  size("static_friction", part.static_friction);
-  size("share", part.share);
+  size("friction", options.friction);
+  size("load", options.load);
+  size("static_friction", options.static_friction);
+  size("share", options.share);
   const auto coefficient = [&](const char* what, const std::optional<double>& value) {
     if (value && !(*value >= 0 && *value <= 1))
-      wrong(part, part.kind, fmt::format("{}: got {}, expected in [0, 1]", what, *value));
+      wrong(part, kind, fmt::format("{}: got {}, expected in [0, 1]", what, *value));
   };
-  coefficient("restitution", part.restitution);
-  coefficient("tangential_restitution", part.tangential_restitution);
-  if (part.friction && part.static_friction && *part.static_friction < *part.friction)
-    wrong(part, part.kind,
+  coefficient("restitution", options.restitution);
+  coefficient("tangential_restitution", options.tangential_restitution);
+  if (options.friction && options.static_friction && *options.static_friction < *options.friction)
+    wrong(part, kind,
           fmt::format("static_friction: got {}, expected at least friction, {}",
-                      *part.static_friction, *part.friction));
-  check_share(part);
-  if (part.friction) return;
+                      *options.static_friction, *options.friction));
+  check_share(part, kind, options);
+  if (options.friction) return;
   const auto alone = [&](const char* what) {
-    wrong(part, part.kind,
+    wrong(part, kind,
           fmt::format("{}: set friction too, 0 for a smooth ground; without, the contact is ideal",
                       what));
   };
-  if (part.static_friction) alone("static_friction");
-  if (part.restitution) alone("restitution");
-  if (part.tangential_restitution) alone("tangential_restitution");
-  if (part.load) alone("load");
-  if (part.unilateral && *part.unilateral) alone("unilateral");
+  if (options.static_friction) alone("static_friction");
+  if (options.restitution) alone("restitution");
+  if (options.tangential_restitution) alone("tangential_restitution");
+  if (options.load) alone("load");
+  if (options.unilateral && *options.unilateral) alone("unilateral");
 }
 
 void Assembly::check_brakes() {
@@ -119,6 +120,9 @@ std::vector<Coupling> Assembly::slipping_couplings() {
     for (const auto& contact : parts_.contacts_)
       if (contact.name == one.name && contact.friction)
         wrong(contact, contact.kind, "this name is taken by a joint with friction");
+    for (const auto& pair : parts_.loops_)
+      if (pair.name == one.name && pair.contact.friction)
+        wrong(pair, pair.kind, "this name is taken by a joint with friction");
     for (const auto& coupling : parts_.couplings_)
       if (coupling.name == one.name)
         wrong(coupling, "coupling", "this name is taken by a joint with friction");
@@ -145,20 +149,20 @@ int Assembly::kept_place(const Multibody& system, size_t row) {
   return at == system.kept().end() ? -1 : static_cast<int>(at - system.kept().begin());
 }
 
-void Assembly::add_law(const Multibody& system, size_t contact, size_t row, double load) {
-  const Mechanism::ContactPart& part = parts_.contacts_[contact];
-  const size_t height = row + system.all_rows().contacts[contact].row_count() - 1;
+void Assembly::add_law(const Multibody& system, const std::string& name,
+                       const ContactOptions& options, size_t row, size_t rows, double load) {
+  const size_t height = row + rows - 1;
   ContactLaw law;
-  law.name = part.name;
-  law.friction = *part.friction;
-  law.static_friction = part.static_friction.value_or(0);
-  law.restitution = part.restitution.value_or(0);
-  law.tangential_restitution = part.tangential_restitution.value_or(0);
+  law.name = name;
+  law.friction = *options.friction;
+  law.static_friction = options.static_friction.value_or(0);
+  law.restitution = options.restitution.value_or(0);
+  law.tangential_restitution = options.tangential_restitution.value_or(0);
   for (; row < height; ++row)
     if (const int place = kept_place(system, row); place >= 0) law.tangential.push_back(place);
   if (const int place = kept_place(system, height); place >= 0) law.normal = place;
   else law.load = load;
-  law.share = parts_.distribution_.name == "refuse" ? 0 : part.share.value_or(1);
+  law.share = parts_.distribution_.name == "refuse" ? 0 : options.share.value_or(1);
   model_.contact_laws.push_back(std::move(law));
 }
 
@@ -187,8 +191,16 @@ void Assembly::state_contacts(const Multibody& system) {
   const ConstraintRows& rows = system.all_rows();
   size_t row = 0;
   for (size_t i = 0; i < rows.contacts.size(); ++i) {
-    if (rows.contacts[i].slips) add_law(system, i, row, loads[i]);
-    row += rows.contacts[i].row_count();
+    const size_t count = rows.contacts[i].row_count();
+    const Mechanism::ContactPart& part = parts_.contacts_[i];
+    if (rows.contacts[i].slips) add_law(system, part.name, part, row, count, loads[i]);
+    row += count;
+  }
+  for (size_t i = 0; i < rows.loops.size(); ++i) {
+    const size_t count = rows.loops[i].row_count();
+    const Mechanism::LoopPart& part = parts_.loops_[i];
+    if (rows.loops[i].slips) add_law(system, part.name, part.contact, row, count, 0);
+    row += count;
   }
   const std::string& policy = parts_.distribution_.name;
   if (std::ranges::count_if(model_.contact_laws, &ContactLaw::has_normal) > 3 && policy != "refuse")
@@ -196,7 +208,6 @@ void Assembly::state_contacts(const Multibody& system) {
         "more than three contacts: loads that the motion leaves open are those of contacts of {} "
         "(distribution)",
         policy == "stated" ? "the stated shares" : "equal compliance"));
-  for (const Loop& loop : rows.loops) row += loop.row_count();
   for (const Coupling& coupling : rows.couplings) {
     const int place = kept_place(system, row++);
     if (coupling.slips && place >= 0) add_law(coupling, place);

@@ -137,17 +137,24 @@ void Assembly::draw(const std::shared_ptr<Multibody>& system) {
     drawing.bodies.push_back(std::move(drawn));
   }
   draw_couplings(system);
-  for (size_t i = 0; i < parts_.contacts_.size(); ++i) {
-    model_.forces.push_back(
-        {parts_.contacts_[i].name,
-         [system, i](std::span<const double> coordinates, std::span<const double> reactions) {
-           std::vector<double> g(system->drawn().size());
-           system->geometry().from_coordinates(coordinates, g.data());
-           const Contact& contact = system->all_rows().contacts[i];
-           const Vec3 at = system->all_rows().touch(contact, system->tree(g.data()));
-           return std::pair{at, system->reaction(i, g.data(), reactions)};
-         }});
-  }
+  const auto draw_reaction = [&](const std::string& part, auto touch) {
+    model_.forces.push_back({part, [system, part, touch](std::span<const double> coordinates,
+                                                         std::span<const double> reactions) {
+                               std::vector<double> g(system->drawn().size());
+                               system->geometry().from_coordinates(coordinates, g.data());
+                               const Vec3 at = touch(system->all_rows(), system->tree(g.data()));
+                               return std::pair{at, system->reaction(part, g.data(), reactions)};
+                             }});
+  };
+  for (size_t i = 0; i < parts_.contacts_.size(); ++i)
+    draw_reaction(parts_.contacts_[i].name, [i](const ConstraintRows& rows, const Tree& tree) {
+      return rows.touch(rows.contacts[i], tree);
+    });
+  for (size_t i = 0; i < parts_.loops_.size(); ++i)
+    if (parts_.loops_[i].kind != "loop")
+      draw_reaction(parts_.loops_[i].name, [i](const ConstraintRows& rows, const Tree& tree) {
+        return rows.loops[i].touch(tree);
+      });
 }
 
 }  // namespace hamel

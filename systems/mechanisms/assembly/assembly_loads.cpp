@@ -33,12 +33,13 @@ void Assembly::check_distribution() {
     mistakes_.push_back(policy.where + unknown_name("distribution", policy.name, known));
 }
 
-void Assembly::check_share(const Mechanism::ContactPart& part) {
+void Assembly::check_share(const Part& part, const std::string& kind,
+                           const ContactOptions& options) {
   const bool stated = parts_.distribution_.name == "stated";
-  if (part.share && !stated)
-    wrong(part, part.kind, "share: expected distribution = \"stated\" beside it");
-  if (stated && part.friction && !(part.share && *part.share > 0))
-    wrong(part, part.kind,
+  if (options.share && !stated)
+    wrong(part, kind, "share: expected distribution = \"stated\" beside it");
+  if (stated && options.friction && !(options.share && *options.share > 0))
+    wrong(part, kind,
           "share: distribution is \"stated\": expected a positive number, its part of the loads "
           "that are not determined");
 }

@@ -18,10 +18,11 @@ RollingSurface Assembly::surface(const Mechanism::LoopPart& part) {
   };
   if (part.kind != "ball") return refuse("for a ball; this kind of contact touches the ground");
   if (part.both) return refuse("expected one of on and inside");
-  if (part.slips)
-    return refuse(
-        "a ball that touches another body rolls without slipping; leave friction, "
-        "restitution, load, share and unilateral out");
+  check_friction(part, part.kind, part.contact);
+  if (part.contact.load)
+    wrong(part, part.kind, "load: that of a ball on another body is a reaction; leave it out");
+  if (part.contact.friction && part.contact.unilateral && !*part.contact.unilateral)
+    wrong(part, part.kind, "unilateral: a contact with friction may open; leave friction out");
   if (!(part.radius > 0) || !std::isfinite(part.radius)) {
     wrong(part, part.kind, fmt::format("radius: got {}, expected above 0", part.radius));
     return out;

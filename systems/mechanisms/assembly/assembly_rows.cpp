@@ -78,13 +78,14 @@ void Assembly::look_at_repeat(int row, const Repeat& repeat, const std::vector<R
 
 // Rows of phi that are zero at all places are left out without notice, but not all of a loop:
 // refuses such a loop, or drops it with a note.
-void Assembly::look_at_idle_loops(const Redundancy& redundancy, const std::vector<RowInfo>& words,
-                                  bool drop) {
+void Assembly::look_at_idle_loops(const Redundancy& redundancy, const std::vector<int>& slipping,
+                                  const std::vector<RowInfo>& words, bool drop) {
   for (const auto& loop : parts_.loops_) {
     const auto speaks = [&](size_t i) {
       const int row = static_cast<int>(i);
       return words[i].part == loop.name &&
-             (redundancy.repeats.contains(row) || std::ranges::count(redundancy.rows, row) > 0);
+             (redundancy.repeats.contains(row) || std::ranges::count(redundancy.rows, row) > 0 ||
+              std::ranges::count(slipping, row) > 0);
     };
     bool some = false;
     for (size_t i = 0; i < words.size(); ++i) some = some || speaks(i);
@@ -96,14 +97,15 @@ void Assembly::look_at_idle_loops(const Redundancy& redundancy, const std::vecto
   }
 }
 
-void Assembly::look_at_redundant(const Redundancy& redundancy, const std::vector<RowInfo>& words) {
+void Assembly::look_at_redundant(const Redundancy& redundancy, const std::vector<int>& slipping,
+                                 const std::vector<RowInfo>& words) {
   const Part& policy = parts_.redundant_;
   const bool drop = policy.name == "drop";
   if (!drop && policy.name != "refuse")
     mistakes_.push_back(policy.where + unknown_name("redundant", policy.name, {"drop", "refuse"}));
   for (const auto& [row, repeat] : redundancy.repeats)
     look_at_repeat(row, repeat, rows_said_, drop);
-  look_at_idle_loops(redundancy, words, drop);
+  look_at_idle_loops(redundancy, slipping, words, drop);
   stop_at_mistakes();
 }
 
@@ -120,7 +122,7 @@ void Assembly::find_rows(const std::shared_ptr<Multibody>& system,
     if (system->row_info()[row].slips) others.push_back(static_cast<int>(row));
   redundancy_ =
       find_redundancy(*system, {system->drawn(), start_configuration(*system, *starts_)}, others);
-  look_at_redundant(redundancy_, system->row_info());
+  look_at_redundant(redundancy_, kept, system->row_info());
   kept.insert(kept.end(), redundancy_.rows.begin(), redundancy_.rows.end());
   std::ranges::sort(kept);
   system->keep(kept);

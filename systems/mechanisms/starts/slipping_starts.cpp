@@ -1,6 +1,7 @@
 // Which contacts that may slide roll at a start.
 #include <algorithm>
 #include <functional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,22 +14,29 @@ namespace hamel::mechanisms {
 
 using Eigen::VectorXd;
 
-// Velocities of links that carry this contact and no other one: a wheel's. All of them where it is
-// no contact but a joint with friction.
+// Velocities of links that carry this contact and no other one: a wheel's, a ball's. All of them
+// where it is no contact but a joint with friction.
 std::vector<bool> Starts::own_velocities(const std::string& part) const {
   const Tree& tree = system_->tree(system_->drawn().data());
-  const std::vector<Contact>& contacts = system_->all_rows().contacts;
-  const auto carries = [&tree](int link, const Contact& contact) {
-    int at = contact.link;
+  const auto carries = [&tree](int link, int at) {
     while (at != kGround && at != link) at = tree.parent(at);
     return at == link;
   };
-  const auto own = std::ranges::find(contacts, part, &Contact::name);
-  std::vector<bool> out(static_cast<size_t>(system_->dim()), own == contacts.end());
-  if (own == contacts.end()) return out;
-  for (int link = own->link; link != kGround; link = tree.parent(link)) {
-    if (std::ranges::count_if(contacts, [&](const Contact& c) { return carries(link, c); }) > 1)
-      break;
+  std::vector<int> touching;  // links, once for each contact
+  int own = kGround;
+  for (const Contact& contact : system_->all_rows().contacts) {
+    touching.push_back(contact.link);
+    if (contact.name == part) own = contact.link;
+  }
+  for (const Loop& loop : system_->all_rows().loops) {
+    if (!loop.surface) continue;
+    touching.push_back(loop.b);
+    touching.push_back(loop.a);
+    if (loop.name == part) own = loop.b;
+  }
+  std::vector<bool> out(static_cast<size_t>(system_->dim()), own == kGround);
+  for (int link = own; link != kGround; link = tree.parent(link)) {
+    if (std::ranges::count_if(touching, [&](int at) { return carries(link, at); }) > 1) break;
     for (int i = 0; i < tree.count(link); ++i)
       out[static_cast<size_t>(tree.first(link) + i)] = true;
   }
@@ -55,7 +63,7 @@ std::vector<Starts::SlippingPart> Starts::closed_parts(const VectorXd& phi) cons
 // Rows of a part, one after the other, that move nothing but its own velocities from `now`. Are
 // there others?
 bool Starts::add_own_rows(const SlippingPart& part, const StartVelocity& velocity,
-                          const std::function<Equations(int)>& with, Equations& to,
+                          const std::function<Equations(std::span<const int>)>& with, Equations& to,
                           VectorXd& now) const {
   const std::vector<bool> own = own_velocities(part.name);
   const auto moves_others = [&](const VectorXd& then) {
@@ -67,8 +75,12 @@ bool Starts::add_own_rows(const SlippingPart& part, const StartVelocity& velocit
     return false;
   };
   bool slips = false;
-  for (const int row : part.rows) {
-    Equations more = with(row);
+  // A ball on a body slips in directions that mean nothing: its rows hold together, or none.
+  const bool at_once = std::ranges::any_of(
+      system_->all_rows().loops, [&](const Loop& loop) { return loop.name == part.name; });
+  const size_t size = at_once ? part.rows.size() : 1;
+  for (size_t i = 0; i < part.rows.size(); i += size) {
+    Equations more = with(std::span(part.rows).subspan(i, size));
     VectorXd then;
     if (more.solved()) then = velocity(more.a, more.solution());
     if (then.size() == 0 || moves_others(then)) {
@@ -103,9 +115,10 @@ std::vector<std::string> Starts::add_slipping(
   // Not all of them can roll. What several contacts carry does not move for one of them, which
   // would be that of an order; a wheel turns as it rolls ahead, though it slips across.
   const StartVelocity velocity(*system_, g);
-  const auto with = [&](int row) {
+  const auto with = [&](std::span<const int> rows) {
     std::vector<int> more = to.rows;
-    if (std::ranges::count(more, row) == 0) more.push_back(row);
+    for (const int row : rows)
+      if (std::ranges::count(more, row) == 0) more.push_back(row);
     return equations(g, t, stated, more);
   };
   VectorXd now = velocity(to.a, to.solution());

@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -71,7 +72,7 @@ class Starts {
   std::vector<SlippingPart> closed_parts(const Eigen::VectorXd& phi) const;
   std::vector<bool> own_velocities(const std::string& part) const;
   bool add_own_rows(const SlippingPart& part, const StartVelocity& velocity,
-                    const std::function<Equations(int)>& with, Equations& to,
+                    const std::function<Equations(std::span<const int>)>& with, Equations& to,
                     Eigen::VectorXd& now) const;
   /// Adds those of parts that may slide or open, one after the other as long as they agree with the
   /// others and, where not all do, move nothing that several contacts carry; returns the names of

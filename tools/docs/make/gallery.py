@@ -36,6 +36,7 @@ EXAMPLES = {
     "sliding_table": ("tests/examples/sliding_table.toml", "--slip --until 2", "--strobe 4"),
     "door_with_friction": ("tests/examples/door_with_friction.toml", "--slip --until 5", "--strobe 4"),
     "ball_on_shaken_table": ("tests/examples/ball_on_shaken_table.toml", "--slip --until 2", ""),
+    "ball_off_a_dome": ("tests/examples/ball_off_a_dome.toml", "--slip --until 1.6", "--strobe 8"),
     "billiard_ball": ("--config tests/examples/billiard_ball.toml", "", "--strobe 6"),
     "rimless_wheel": ("tests/examples/rimless_wheel.toml", "--until 10", "--strobe 4 --at 2"),
     "woodpecker_toy": ("tests/examples/woodpecker_toy.toml", "--slip --until 1 --output-step 0.002", ""),
