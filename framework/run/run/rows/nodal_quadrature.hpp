@@ -56,6 +56,8 @@ class NodalQuadrature {
   /// From the first node to t, between the last two nodes; before it is settled, to any t between
   /// the first and the last.
   double value(double t) const { return integral_ - over(t, times_[0]); }
+  /// Up to the last node.
+  double whole() const { return integral_; }
 
   template <class Archive>
   void serialize(Archive& archive) {

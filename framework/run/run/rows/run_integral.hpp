@@ -83,7 +83,7 @@ class RunIntegral {
   template <class Rate>
   void break_off(const Snapshot& at, const Rate& rate) {
     settle();
-    done_ += quadrature_.value(at.time);
+    done_ += quadrature_.whole();  // the end of a slip, of no power, may lie between it and `at`
     quadrature_ = NodalQuadrature();
     quadrature_.add(at.time, rate(at));
   }
