@@ -36,6 +36,9 @@ struct Case {
 // undisturbed run, to the last bit.
 TEST_F(Recorded, GoesOnBitForBit) {
   std::ofstream(file("torque.csv")) << "t,value\n0,0\n40,3\n41,-2\n300,1\n";
+  for (const char* name : {"ball_on_shaken_table", "woodpecker_toy", "rimless_wheel"})
+    std::ofstream(file(name + std::string(".toml")))
+        << source_file("tests/examples/" + std::string(name) + ".toml");
   const std::vector<Case> cases = {
       {"lift", {"suslov", "--until", "200"}},
       {"balance", {"chaplygin_sleigh", "--scheme", "balance", "--until", "200"}},
@@ -60,6 +63,14 @@ TEST_F(Recorded, GoesOnBitForBit) {
         "--events", "cusp", "--until", "400"}},
       {"rows of lift between", {"rolling_disk", "--output-step", "0.013", "--until", "200"}},
       {"seldom", {"suslov", "--every", "20", "--until", "4000"}},
+      {"impacts",
+       {"ball_on_shaken_table.toml", "--slip", "--output-step", "0.005", "--until", "100"}},
+      {"slips and impacts",
+       {"woodpecker_toy.toml", "--slip", "--output-step", "0.002", "--until", "20"}},
+      {"impacts of spokes", {"rimless_wheel.toml", "--output-step", "0.01", "--until", "150"}},
+      {"impacts in steps of one size",
+       {"woodpecker_toy.toml", "--slip", "--scheme", "nonsmooth", "--step", "0.001", "--until",
+        "20"}},
       {"short in a long run",
        {"suslov_in_potential", "--scheme", "dop853", "--rtol", "1e-11", "--until", "1e8", "--every",
         "1", "--stop-at", "t>2000"}},
