@@ -17,9 +17,10 @@ namespace hamel::ensemble {
 StateNames::StateNames(const SystemModel& system, bool measures)
     : state_(system),
       columns_(system, {.holonomic = true,
-                        .work = measures && works(*system.mechanics),
+                        .work = measures && works(system),
                         .reactions = measures,
                         .acceleration = measures && !system.sensors.empty(),
+                        .modes = measures && !system.contact_laws.empty(),
                         .paths = measures}) {
   for (size_t i = 0; i < columns_.size(); ++i) {
     bool left_out = false;
@@ -31,8 +32,9 @@ StateNames::StateNames(const SystemModel& system, bool measures)
   }
 }
 
-bool StateNames::works(const Mechanics& mechanics) {
-  return mechanics.has_force() || mechanics.has_drift();
+bool StateNames::works(const SystemModel& system) {
+  return system.mechanics->has_force() || system.mechanics->has_drift() ||
+         !system.contact_laws.empty();
 }
 
 double StateNumber::operator()(const StateColumns& columns, const Snapshot& state,

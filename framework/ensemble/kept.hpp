@@ -31,8 +31,8 @@ class StateNames {
   const std::vector<std::string>& names() const { return names_; }
   const QuantityNames& state() const { return state_; }
   const StateColumns& columns() const { return columns_; }
-  /// Do forces or moving constraints?
-  static bool works(const Mechanics& mechanics);
+  /// Do forces, moving constraints or friction?
+  static bool works(const SystemModel& system);
 
  private:
   QuantityNames state_;
@@ -87,11 +87,11 @@ constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 /// Numbers that a state does not carry itself.
 struct WantedPhysics {
-  bool reactions = false, accelerations = false;
+  bool reactions = false, accelerations = false, modes = false;
   bool balance = false;  // work, or the energy error where work is done: every node is to be seen
   bool paths = false;    // of sensors: the same
   bool nodes() const { return balance || paths; }
-  bool any() const { return reactions || accelerations || nodes(); }
+  bool any() const { return reactions || accelerations || modes || nodes(); }
 };
 
 /// A column of what is kept.

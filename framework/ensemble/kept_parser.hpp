@@ -172,7 +172,7 @@ class KeptFormulas::Parser {
 
   // Refuses what a system has no number of.
   void check_physics(const std::string& text) const {
-    const bool works = StateNames::works(*system_.mechanics);
+    const bool works = StateNames::works(system_);
     for (const std::string& word : words_of(text)) {
       if (word == kWork.name && !works)
         throw std::invalid_argument(
@@ -187,7 +187,7 @@ class KeptFormulas::Parser {
     using Of = StateColumns::Of;
     const StateColumns& columns = out_.states_.columns();
     const auto want = [](bool& wanted, bool now) { wanted = wanted || now; };
-    const bool works = StateNames::works(*system_.mechanics);
+    const bool works = StateNames::works(system_);
     const auto note_column = [&](size_t i) {
       const Of of = columns.of(i);
       want(out_.wants_start_, of == Of::energy_error);  // against that of the start
@@ -195,6 +195,7 @@ class KeptFormulas::Parser {
       want(out_.wants_.reactions, of == Of::reaction);
       want(out_.wants_.accelerations, of == Of::acceleration);
       want(out_.wants_.paths, of == Of::path);
+      want(out_.wants_.modes, of == Of::mode);
       want(out_.wants_.balance, works && (of == Of::work || of == Of::energy_error));
     };
     for (const size_t i : number.used())

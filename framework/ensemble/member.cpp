@@ -220,8 +220,9 @@ bool MemberRunner::follow(MemberFailure& failure) {
       failure.reason = status.reason;
       return true;
     }
-    if (physics_.wants_nodes()) physics_.step(run, before, run.state(of_peaks));
+    physics_.look_within(true);
     look(now);
+    physics_.look_within(false);
     if (nodes && done % plan_.base.every == 0) peak(run.state(of_peaks));
     if (chosen && now == before) break;
   }

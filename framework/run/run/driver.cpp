@@ -27,7 +27,8 @@ void Driver::make_observers() {
   const auto& mechanics = plan_.setup.mechanics;
   const bool rows_move = (mechanics->has_drift() && mechanics->constraint_count() > 0) ||
                          plan_.system->rows_may_depend;
-  watching_ = plan_.recording || plan_.events->any() || plan_.contacts != nullptr;
+  watching_ =
+      plan_.recording || plan_.events->any() || plan_.contacts != nullptr || follower_ != nullptr;
   rows_watch_.reset();
   if (watching_ && rows_move && plan_.contacts == nullptr && !plan_.compiled &&
       plan_.geometry != nullptr && plan_.keeps_rows)
@@ -37,8 +38,8 @@ void Driver::make_observers() {
   steps_left_ = config.chooses_steps() ? std::numeric_limits<long>::max() : config.steps();
   if (!watching_) return;
   times_ = plan_.recording ? config.recorded_times() : std::vector<double>();
-  every_node_ =
-      !times_.empty() || plan_.events->any() || rows_watch_ != nullptr || plan_.contacts != nullptr;
+  every_node_ = !times_.empty() || plan_.events->any() || rows_watch_ != nullptr ||
+                plan_.contacts != nullptr || follower_ != nullptr;
   if (!plan_.recording) return;
   recorder_ = std::make_unique<RunRecorder>(*plan_.system, plan_.config.start, balance(),
                                             plan_.reactions, plan_.motion, paths());
@@ -187,6 +188,11 @@ void Driver::begin() {
   }
   if (const auto met = take_switch()) over_ = over_ || !observe_switch(*met);
   if (!over_ && plan_.events->any()) observe_start();
+}
+
+void Driver::follow(StepFollower* follower) {
+  follower_ = follower;
+  if (follower_ != nullptr) watching_ = every_node_ = true;
 }
 
 void Driver::turn_back() { kernel().turn_back(); }

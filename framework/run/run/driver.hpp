@@ -18,6 +18,7 @@
 #include <hamel/framework/run/run/plan/plan.hpp>
 #include <hamel/framework/run/run/rows/rows_watch.hpp>
 #include <hamel/framework/run/run/rows/run_recorder.hpp>
+#include <hamel/framework/run/run/step_follower.hpp>
 #include <hamel/framework/run/run/steps/restarted_kernel.hpp>
 #include <hamel/framework/run/run/steps/step_watch.hpp>
 
@@ -35,6 +36,8 @@ class Driver {
   void turn_back();
   void input(const std::string& name, double value);
   void restart(const Start& start);
+  /// The steps from here on are shown to it too, also behind restart(); null: to none.
+  void follow(StepFollower* follower);
   const Snapshot& at(double t);
   const Snapshot& state(const StateParts& parts);
   double time();
@@ -146,6 +149,7 @@ class Driver {
   std::optional<StartMatrices> matrices_;  // of a restart, where they are the same everywhere
   std::unique_ptr<DenseOutput> dense_;     // made when it is first needed
   std::unique_ptr<RunRecorder> recorder_;  // null where nothing is recorded
+  StepFollower* follower_ = nullptr;       // the caller's
   StepWatch steps_;                        // of chosen ones
   long rejected_ = 0;                      // tries that it has counted
   std::unique_ptr<RowsWatch> rows_watch_;  // where rows move and no kernel is compiled for them

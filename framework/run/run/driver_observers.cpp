@@ -32,7 +32,7 @@ bool Driver::observe_step(double begin) {
     bool go_on = true;
     if (observe_event(event, begin, go_on)) return go_on;
   }
-  if (plan_.recording) balance_step(begin, end);
+  balance_step(begin, end);
   if (!times_.empty() && !output(end.time)) return false;
   if (met && !observe_switch(*met)) return false;
   if (!plan_.recording || !times_.empty()) return true;
@@ -41,8 +41,9 @@ bool Driver::observe_step(double begin) {
 
 // A step from `begin`, whole or up to an event within it, to what follows the energy.
 void Driver::balance_step(double begin, const Snapshot& end) {
-  if (recorder_ == nullptr || !recorder_->wants_nodes()) return;
-  recorder_->step(begin, end, [this](double t, Snapshot& out) { return motion_within(t, out); });
+  const auto within = [this](double t, Snapshot& out) { return motion_within(t, out); };
+  if (follower_ != nullptr) follower_->step(begin, end, within);
+  if (recorder_ != nullptr && recorder_->wants_nodes()) recorder_->step(begin, end, within);
 }
 
 void Driver::observe_start() {
@@ -169,6 +170,7 @@ void Driver::restart_behind(const EventState& state, const Events::Found& event)
   kernel().state(node_);
   if (rows_watch_ != nullptr) rows_watch_->begin(node_);
   if (recorder_ != nullptr) recorder_->impact(event.state, node_);
+  if (follower_ != nullptr) follower_->impact(event.state, node_);
   plan_.events->resume(node_, event.name);
 }
 

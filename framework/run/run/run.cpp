@@ -83,6 +83,7 @@ const Config& Run::config() const { return driver().plan().config; }
 const SystemModel& Run::system() const { return *driver().plan().system; }
 const std::vector<std::string>& Run::notes() const { return driver().plan().notes; }
 const std::shared_ptr<Inputs>& Run::inputs() const { return driver().plan().setup.inputs; }
+Driver& Run::driver() { return present(driver_, "driver"); }
 const Driver& Run::driver() const { return present(driver_, "driver"); }
 
 }  // namespace hamel

@@ -89,6 +89,7 @@ class HAMEL_API Run {
 
   /// The insides, for the library's own rooms (driver.hpp is not installed).
   const Driver& driver() const;
+  Driver& driver();
 
  private:
   std::unique_ptr<Driver> driver_;

@@ -85,6 +85,22 @@ TEST(KeptPhysics, TheWorkOfAMovingConstraintAndOfAForce) {
   expect_as_in_rows(snakeboard, {"work", "energy_error"});
 }
 
+/// A ball that bounces, slides and rolls: the work of its friction, over what strikes take; modes
+/// and reactions at a time within the step that a switch ends. Built anew, and restarted.
+TEST(KeptPhysics, ContactsThatSwitch) {
+  EnsembleConfig ball = of("rolling_ball", 1);
+  ball.run.slip = true;
+  ball.run.parameters = {{"friction", {0.2}}, {"restitution", {0.4}}};
+  ball.run.start.velocity = {3, -20, 5, 2, 0.5, 1};
+  ball.run.rtol = 1e-9;
+  const std::vector<std::string> kept = {"work", "energy_error", "contact.mode", "lambda2",
+                                         "lambda3"};
+  ball.vary = {{"friction", Law::uniform, {0.05, 0.5}}};
+  expect_as_in_rows(ball, kept);
+  ball.vary = {{"start.omega2", Law::uniform, {-30, 30}}};
+  expect_as_in_rows(ball, kept);
+}
+
 /// Where the energy is kept the reactions still are what the rows have, in formulas too.
 TEST(KeptPhysics, ReactionsWhereNoWorkIsDone) {
   EnsembleConfig sleigh = of("chaplygin_sleigh", 1);

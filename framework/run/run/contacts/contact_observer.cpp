@@ -27,6 +27,7 @@ bool Driver::observe_switch(const ContactSwitch& met) {
   }
   if (node_.step > 0) {
     if (recorder_ != nullptr) recorder_->impact(met.before, met.after);
+    if (follower_ != nullptr) follower_->impact(met.before, met.after);
     if (plan_.events->any()) plan_.events->resume(met.after, "");
   }
   if (!stops) return true;
