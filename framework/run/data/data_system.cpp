@@ -10,6 +10,7 @@
 #include <hamel/framework/run/data/data_formulas.hpp>
 #include <hamel/framework/run/data/data_mechanics.hpp>
 #include <hamel/framework/run/data/formula_programs.hpp>
+#include <hamel/framework/run/data/toml_contacts.hpp>
 #include <hamel/framework/run/data/toml_events.hpp>
 #include <hamel/framework/run/data/toml_outputs.hpp>
 #include <hamel/framework/run/data/toml_parameters.hpp>
@@ -196,10 +197,11 @@ class File {
 
   void check_keys() {
     static const Names known = {
-        "configuration", "constraints", "contacts",   "coordinates", "draw",     "drift",
-        "events",        "floor",       "force",      "from_above",  "group",    "holonomic",
-        "inertia",       "inputs",      "invariants", "let",         "momentum", "name",
-        "outputs",       "parameters",  "potential",  "rates",       "state",    "velocity"};
+        "configuration", "constraints", "contact",   "contacts", "coordinates",
+        "draw",          "drift",       "events",    "floor",    "force",
+        "from_above",    "group",       "holonomic", "inertia",  "inputs",
+        "invariants",    "let",         "momentum",  "name",     "outputs",
+        "parameters",    "potential",   "rates",     "state",    "velocity"};
     for (const auto& [name, node] : table_) {
       const std::string key(name.str());
       if (std::find(known.begin(), known.end(), key) == known.end())
@@ -236,7 +238,7 @@ class File {
               formulas_.expression(node, "invariants." + name, names_.coordinates + names_.rates))
         model_.invariants.push_back({name, of_state(std::move(*f))});
     });
-    if (const Node* node = table_.get("contacts")) contacts(*node);
+    contacts();
     if (const Node* node = table_.get("floor"))
       read_.value(*node, "floor", model_.drawing.has_floor);
     if (const Node* node = table_.get("from_above")) {
@@ -264,21 +266,24 @@ class File {
       return formula(values);
     };
   }
-  void contacts(const Node& node) {
-    const std::vector<double> rows = formulas_.numbers(node, "contacts");
+  void contacts() {
     const auto count = [&](const char* key) {
       const Node* list = table_.get(key);
-      return list == nullptr ? 0.0 : static_cast<double>(list->as_array()->size());
+      return list == nullptr ? 0 : static_cast<int>(list->as_array()->size());
     };
-    const double most = count("constraints") + count("holonomic");
-    for (const double row : rows) {
-      const bool holds = row > count("constraints");  // behind the rows of states
-      if (row >= 1 && row <= most && row == std::floor(row))
-        model_.contacts.push_back(static_cast<int>(row) - 1 +
-                                  (holds ? static_cast<int>(names_.states) : 0));
-      else
-        read_.wrong(node, "contacts", fmt::format("numbers of rows, 1 to {}, got {}", most, row));
+    const StatedRows all{count("constraints"), static_cast<int>(names_.states), count("holonomic")};
+    if (const Node* node = table_.get("contacts")) {
+      for (const double row : formulas_.numbers(*node, "contacts")) {
+        if (row >= 1 && row <= all.count() && row == std::floor(row))
+          model_.contacts.push_back(all.index(static_cast<int>(row)));
+        else
+          read_.wrong(*node, "contacts",
+                      fmt::format("numbers of rows, 1 to {}, got {}", all.count(), row));
+      }
     }
+    model_.contact_laws = ContactReader(read_, formulas_, all).read(table_);
+    for (const ContactLaw& law : model_.contact_laws)
+      if (law.normal) std::erase(model_.contacts, *law.normal);
   }
 
   const Registry& registry_;

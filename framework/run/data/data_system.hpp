@@ -18,6 +18,8 @@
 //                                      # scalars behind the coordinates; rates linear in velocities
 //   configuration = [0, 0, 0, "alpha"] # the start: also velocity, momentum
 //   contacts = [1]                     # the rows, from 1, whose multiplier is a normal reaction
+//   [[contact]]                        # rows that slide, open and strike: friction
+//   tangential = [1]                   # (toml_contacts.hpp)
 //   from_above = true                  # how it is drawn: also floor; bodies: data_drawing.hpp
 //   [parameters]                       # numbers to set, study and sweep (toml_parameters.hpp)
 //   m = { value = 2, unit = "kg", meaning = "mass", least = 0 }
