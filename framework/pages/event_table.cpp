@@ -73,6 +73,28 @@ struct Strikes {
   double energy = 0;
 };
 
+// By names of parts: contacts that strike at once take their energy together.
+std::map<std::string, Strikes> strikes_of(const std::vector<EventMet>& events,
+                                          const std::vector<std::optional<double>>& energies) {
+  std::map<std::string, Strikes> out;
+  for (size_t k = 0; k < events.size();) {
+    const EventMet& first = events[k];
+    std::string parts;
+    size_t end = k;
+    for (; end < events.size() && events[end].time == first.time &&
+           events[end].velocity == first.velocity;
+         ++end)
+      if (const std::string part = part_of(events[end].name, ".strikes"); !part.empty())
+        parts += (parts.empty() ? "" : ", ") + part;
+    if (!parts.empty() && energies[k]) {
+      ++out[parts].count;
+      out[parts].energy += *energies[k];
+    }
+    k = end;
+  }
+  return out;
+}
+
 // Strikes and friction of each contact that has taken energy.
 void add_taken(Page& page, const Result& r, const std::map<std::string, Strikes>& strikes) {
   std::map<std::string, std::pair<Strikes, double>> taken;
@@ -98,28 +120,11 @@ void add_events(Page& page, const Registry& registry, const Result& r) {
   if (r.events.empty()) return add_taken(page, r, {});
   const std::vector<Component> components = components_of(*r.system);
   const TakenEnergy taken(registry, r);
-  std::map<std::string, Strikes> strikes;
   bool any_taken = false;
   std::vector<std::optional<double>> energies;
   for (const EventMet& event : r.events) {
     energies.push_back(taken(event));
     any_taken = any_taken || energies.back();
-  }
-  // Contacts that strike at once take their energy together.
-  for (size_t k = 0; k < r.events.size();) {
-    const EventMet& first = r.events[k];
-    std::string parts;
-    size_t end = k;
-    for (; end < r.events.size() && r.events[end].time == first.time &&
-           r.events[end].velocity == first.velocity;
-         ++end)
-      if (const std::string part = part_of(r.events[end].name, ".strikes"); !part.empty())
-        parts += (parts.empty() ? "" : ", ") + part;
-    if (!parts.empty() && energies[k]) {
-      ++strikes[parts].count;
-      strikes[parts].energy += *energies[k];
-    }
-    k = end;
   }
   const size_t n = r.events.front().velocity.size();
   const bool velocities = n <= kMostVelocities && n == components.size();
@@ -137,7 +142,7 @@ void add_events(Page& page, const Registry& registry, const Result& r) {
     if (any_taken) rows.back().push_back(energies[k] ? Cell(*energies[k]) : Cell(""));
   }
   page.table("Events", columns, rows);
-  add_taken(page, r, strikes);
+  add_taken(page, r, strikes_of(r.events, energies));
 }
 
 }  // namespace hamel::pages

@@ -18,6 +18,20 @@ double by_differences(const std::function<double(double)>& rate, double t) {
   return out[0];
 }
 
+// Adds the rows of a loop: add(part, number, meaning, holonomic, height).
+template <class Add>
+void add_loop_info(const Loop& loop, const Add& add, std::vector<RowInfo>& out) {
+  if (loop.surface) {
+    for (const int i : {1, 2}) add(loop.name, i, "rolls without slipping", false, false);
+    add(loop.name, 3, "touches the other body", true, true);
+    for (size_t i = 1; i <= 3; ++i) out[out.size() - i].slips = loop.slips;
+    return;
+  }
+  for (int i = 1; i <= 3; ++i) add(loop.name, i, "the points of the joint coincide", true, false);
+  for (int i = 4; i <= 5 && loop.is_hinge(); ++i)
+    add(loop.name, i, "the axes of the joint coincide", true, false);
+}
+
 }  // namespace
 
 std::vector<RowInfo> ConstraintRows::info() const {
@@ -35,17 +49,7 @@ std::vector<RowInfo> ConstraintRows::info() const {
     for (int i = 1; i <= number; ++i)
       out[out.size() - static_cast<size_t>(i)].slips = contact.slips;
   }
-  for (const Loop& loop : loops) {
-    if (loop.surface) {
-      for (const int i : {1, 2}) add(loop.name, i, "rolls without slipping", false);
-      add(loop.name, 3, "touches the other body", true, true);
-      for (size_t i = 1; i <= 3; ++i) out[out.size() - i].slips = loop.slips;
-      continue;
-    }
-    for (int i = 1; i <= 3; ++i) add(loop.name, i, "the points of the joint coincide", true);
-    for (int i = 4; i <= 5 && loop.is_hinge(); ++i)
-      add(loop.name, i, "the axes of the joint coincide", true);
-  }
+  for (const Loop& loop : loops) add_loop_info(loop, add, out);
   for (const Coupling& coupling : couplings) {
     const char* const rates = coupling.slips    ? "sticks"
                               : coupling.affine ? "is the rate of a state"

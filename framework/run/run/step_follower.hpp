@@ -1,4 +1,4 @@
-// What follows a run step by step, beside its rows. Not installed.
+// Follower of a run, step by step, beside its rows. Not installed.
 #pragma once
 
 #include <functional>

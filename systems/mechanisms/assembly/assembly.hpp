@@ -93,6 +93,7 @@ class Assembly {
   void check_share(const Part& part, const std::string& kind, const ContactOptions& options);
   void check_distribution();
   void check_brakes();
+  void check_taken(const std::string& name);
   /// Dry friction, brakes and stops of joints, and walls, as couplings that do not always hold.
   std::vector<mechanisms::Coupling> slipping_couplings();
   std::optional<mechanisms::Coupling> wall(const Mechanism::WallPart& part);

@@ -85,6 +85,17 @@ bool Assembly::is_of_joint(const std::string& row, const Mechanism::JointPart& p
   return row == part.name || row == part.name + ".low" || row == part.name + ".high";
 }
 
+// Refuses a contact or a coupling with the name of friction, a stop or a wall.
+void Assembly::check_taken(const std::string& name) {
+  const char* const taken = "this name is taken by a joint with friction";
+  for (const auto& contact : parts_.contacts_)
+    if (contact.name == name && contact.friction) wrong(contact, contact.kind, taken);
+  for (const auto& pair : parts_.loops_)
+    if (pair.name == name && pair.contact.friction) wrong(pair, pair.kind, taken);
+  for (const auto& coupling : parts_.couplings_)
+    if (coupling.name == name) wrong(coupling, "coupling", taken);
+}
+
 // In this order: friction and stops of a joint, one after the other; walls.
 std::vector<Coupling> Assembly::slipping_couplings() {
   std::vector<Coupling> out;
@@ -116,17 +127,7 @@ std::vector<Coupling> Assembly::slipping_couplings() {
   }
   for (const auto& part : parts_.walls_)
     if (auto found = wall(part)) out.push_back(std::move(*found));
-  for (const Coupling& one : out) {
-    for (const auto& contact : parts_.contacts_)
-      if (contact.name == one.name && contact.friction)
-        wrong(contact, contact.kind, "this name is taken by a joint with friction");
-    for (const auto& pair : parts_.loops_)
-      if (pair.name == one.name && pair.contact.friction)
-        wrong(pair, pair.kind, "this name is taken by a joint with friction");
-    for (const auto& coupling : parts_.couplings_)
-      if (coupling.name == one.name)
-        wrong(coupling, "coupling", "this name is taken by a joint with friction");
-  }
+  for (const Coupling& one : out) check_taken(one.name);
   return out;
 }
 
