@@ -121,6 +121,7 @@ class Sections {
     long quiet = 0;
     while (orbit.found < request_.count) {
       if (stop != nullptr && stop->load()) return false;
+      remember(run);
       const Status status = run.step();
       if (!status.ok) orbit.reason = status.reason;
       else if (++quiet > kMostQuiet)
@@ -128,6 +129,7 @@ class Sections {
       else if (request_.longest && std::abs(run.time() - first_) >= *request_.longest)
         orbit.reason = fmt::format("{} s have passed", *request_.longest);
       for (; seen < run.events().size() && orbit.found < request_.count; ++seen) {
+        if (run.events()[seen].name != request_.event) continue;  // of a contact
         quiet = 0;
         if (!in_direction(run.state())) continue;
         add(run.events()[seen], number, points, orbit);
@@ -200,9 +202,18 @@ class Sections {
                        *request_.energy, reached)});
     }
   }
-  // An event crosses once in a step at most: beyond it its function has the sign of the direction.
+  bool selects() const { return request_.direction != 0 && event_ && event_->direction == 0; }
+  // Where the step begins.
+  void remember(Run& run) {
+    if (!selects()) return;
+    const Snapshot& now = run.state();
+    before_ = event_->value(now.time, now.coordinates, now.velocity);
+  }
+  // An event crosses once in a step at most: where this begins its function has the other sign, or
+  // is 0 where the run begins on the section. Behind the step an impact may have turned it round.
   bool in_direction(const Snapshot& after) {
-    if (request_.direction == 0 || !event_ || event_->direction != 0) return true;
+    if (!selects()) return true;
+    if (before_ != 0) return request_.direction * before_ < 0;
     return request_.direction * event_->value(after.time, after.coordinates, after.velocity) > 0;
   }
   void add(const EventMet& met, long long number, Points& points, SectionOrbit& orbit) {
@@ -219,7 +230,7 @@ class Sections {
   std::shared_ptr<const SystemModel> system_;
   std::optional<Event> event_;
   std::unique_ptr<Run> energy_;  // of a state
-  double first_ = 0;
+  double first_ = 0, before_ = 0;
 };
 
 std::vector<std::string> cells_of(const std::string& line) {

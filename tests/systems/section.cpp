@@ -101,6 +101,26 @@ TEST(Section, WrittenStartsAreRead) {
   EXPECT_THROW(read_starts(path, registry(), simulation.config()), ConfigError);
 }
 
+/// Through impacts: a ball that bounces, by the times at which it is highest, of flights that are e
+/// times as long each.
+TEST(Section, GoesThroughImpacts) {
+  const double e = 0.8, g = 9.81, w = 3;
+  Simulation ball = simulate("rolling_ball")
+                        .set("friction", 0.2)
+                        .set("restitution", e)
+                        .start({.velocity = {0, 0, 0, 0, 0, w}})
+                        .slip()
+                        .tolerance({.relative = 1e-10});
+  const Section section = hamel::section(ball, {.event = "z'=0", .direction = -1, .count = 5});
+  ASSERT_EQ(section.points.rows(), 5u);
+  double before = 0, up = w;
+  for (size_t n = 0; n < 5; ++n) {
+    EXPECT_NEAR(numbers(section, "t")[n], before + up / g, 1e-8);
+    before += 2 * up / g;
+    up *= e;
+  }
+}
+
 TEST(Section, MistakesAreRefused) {
   Simulation simulation = simulate("rattleback");
   EXPECT_THROW(hamel::section(simulation, {.event = "revresed"}), ConfigError);
