@@ -8,6 +8,7 @@
 
 #include <hamel/framework/mechanics/components.hpp>
 #include <hamel/framework/run/run/driver.hpp>
+#include <hamel/framework/run/run/step_follower.hpp>
 #include <hamel/framework/study/parts.hpp>
 
 namespace hamel::study {
@@ -38,7 +39,7 @@ double processor_time() {
 }
 
 // Follows a run along the reference.
-class CellMeter {
+class CellMeter final : public StepFollower {
  public:
   CellMeter(const GroupInfo& group, const StudyReference& reference, EnergyBalance balance,
             StudyMetrics& out)
@@ -50,15 +51,17 @@ class CellMeter {
     all_.exact_error_final = all_.exact_error_max = all_.exact_velocity_error_max = 0;
   }
 
-  // The start of the run, and each of its steps.
-  void start(const Snapshot& state) {
-    if (balance_.active()) balance_.node(state);
-    last_node_ = state.time;
+  // Where work is done every node is seen: also those where an input jumps within a step.
+  void start(Run& run) {
+    if (!balance_.active()) return;
+    balance_.node(run.state());
+    run.driver().follow(this);
   }
-  void step(const Run& run, const Snapshot& end) {
-    balance_.step(last_node_, end,
-                  [&run](double t, Snapshot& out) { return run.driver().motion_within(t, out); });
-    last_node_ = end.time;
+  void step(double begin, const Snapshot& end, const Within& motion_within) override {
+    balance_.step(begin, end, motion_within);
+  }
+  void impact(const Snapshot& before, const Snapshot& after) override {
+    balance_.impact(before, after);
   }
   // Not ok where the state is no good one.
   Status row(const Snapshot& state) {
@@ -114,7 +117,7 @@ class CellMeter {
   EnergyBalance balance_;
   StudyMetrics& out_;
   Measurements all_;
-  double energy_start_ = 0, size_ = 0, last_node_ = 0;
+  double energy_start_ = 0, size_ = 0;
   std::vector<double> times_, energy_;
 };
 
@@ -189,22 +192,10 @@ StudyMetrics measure(const Registry& registry, const StudySystem& system, const 
                      const StudyReference& reference, const std::atomic<bool>* stop) {
   StudyMetrics out;
   const Config config = cell.config();
-  Simulation made = simulation(registry, system, config);
-  Run run = made.build();
-  CellMeter* recorder = nullptr;
-  if (run.driver()
-          .balance()
-          .active()) {  // every node is seen: also those where an input jumps within a step
-    made.every(1).keep_rows(2).observe([&recorder, &run](const Snapshot& state) {
-      if (state.step > 0) recorder->step(run, state);
-      return true;
-    });
-    run = made.build();
-  }
+  Run run = simulation(registry, system, config).build();
   CellMeter meter(run.system().group, reference, run.driver().balance(), out);
-  recorder = &meter;
   out.ok = true;
-  meter.start(run.state());
+  meter.start(run);
   static_cast<void>(meter.row(run.state()));
   meter.compare(run.state(), 0);
   const Status status = config.chooses_steps() ? follow_chosen(run, meter, reference, stop)
