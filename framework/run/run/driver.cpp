@@ -191,8 +191,10 @@ void Driver::begin() {
 }
 
 void Driver::follow(StepFollower* follower) {
-  follower_ = follower;
-  if (follower_ != nullptr) watching_ = every_node_ = true;
+  if (std::exchange(follower_, follower) == follower) return;
+  recorder_.reset();
+  sinks_.clear();
+  make_observers();  // those that a run has which is looked at, as behind restart()
 }
 
 void Driver::turn_back() { kernel().turn_back(); }

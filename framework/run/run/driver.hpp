@@ -36,7 +36,7 @@ class Driver {
   void turn_back();
   void input(const std::string& name, double value);
   void restart(const Start& start);
-  /// The steps from here on are shown to it too, also behind restart(); null: to none.
+  /// Its steps are shown to that too, also behind restart(); null: to none. Before the first step.
   void follow(StepFollower* follower);
   const Snapshot& at(double t);
   const Snapshot& state(const StateParts& parts);
