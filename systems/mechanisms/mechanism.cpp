@@ -87,7 +87,7 @@ void Mechanism::coupling(const std::string& name, const CouplingOptions& options
   couplings_.push_back({part(name), options});
 }
 void Mechanism::wall(const std::string& name, const WallOptions& options) {
-  time(options.distance);
+  time(options.distance + " " + options.slip);
   walls_.push_back({part(name), options});
 }
 void Mechanism::time(const std::string& formula) {

@@ -17,7 +17,7 @@
 //   child = "deck"           # stiffness, rest, damping; held = true: locked where it starts;
 //                            # friction [N m, N], stop = [low, high], restitution
 //   [[wall]]                 # name; distance = "1 - way.position", not negative, of t too;
-//                            # restitution
+//                            # restitution; friction, with slip = "height.rate"
 //   [[wheel]] [[roller]] [[blade]] [[ball]] [[point]] [[tube]] [[ellipsoid]]
 //                            # name (left out: the body's), body, at; axle, radius, angle, crown;
 //                            # along; semi_axes; friction, restitution, load [N], unilateral;

@@ -85,7 +85,11 @@ struct PointOptions {
 struct WallOptions {
   std::string distance = {};  // a formula of coordinates and t, not negative
   double restitution = 0;
-  Parameters constants = {};  // names that the formula may use
+  Parameters constants = {};  // names that the formulas may use
+  // Coulomb's, and what slips along it, linear in velocities, one at the point of contact: a
+  // distance has no point.
+  std::optional<double> friction = {};
+  std::string slip = {};
 };
 struct LoopOptions {
   Point at = {0, 0, 0};    // m

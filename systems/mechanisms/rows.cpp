@@ -55,7 +55,9 @@ std::vector<RowInfo> ConstraintRows::info() const {
                               : coupling.affine ? "is the rate of a state"
                                                 : "couples rates";
     const char* const joints = coupling.slips ? "stops" : "couples joints";
-    add(coupling.name, 1, coupling.of_rates() ? rates : joints, !coupling.of_rates());
+    const auto same = [&](const RowInfo& row) { return row.part == coupling.name; };
+    add(coupling.name, 1 + static_cast<int>(std::ranges::count_if(out, same)),
+        coupling.of_rates() ? rates : joints, !coupling.of_rates());
     out.back().length = false;
     out.back().slips = coupling.slips;
   }

@@ -182,5 +182,53 @@ TEST(Walls, AShortStrikeIsFoundWhereverItIsInAStep) {
   }
 }
 
+// A mass on two sliders that is thrown onto a rough wall z = 0 with v along it: its bounces end at
+// 2 w/g e/(1 - e) behind the first strike and take mu (1 + e) w/(1 - e) of v, then mu g a second.
+Mechanism thrown_onto_a_wall(const WallOptions& wall) {
+  Mechanism m("thrown");
+  m.body("cart", {.mass = 0.5, .at = {0, 0, 0.02}});
+  m.body("stone", {.mass = 2, .at = {0, 0, 0.02}, .sphere = 0.01});
+  m.slider("way", kWorld, "cart", {.axis = {1, 0, 0}});
+  m.slider("height", "cart", "stone", {.axis = {0, 0, 1}});
+  m.wall("table", wall);
+  m.start({{"height.position", 0.02}, {"way.rate", 3}, {"height.rate", 0}});
+  return m;
+}
+
+TEST(SlippingWall, BouncesRubsAndSticks) {
+  const double mu = 0.2, e = 0.4, w = std::sqrt(2 * kGravity * 0.02), mass = 2.5, stone = 2;
+  const Result r = slipping(thrown_onto_a_wall({.distance = "height.position",
+                                                .restitution = e,
+                                                .friction = mu,
+                                                .slip = "way.rate"}))
+                       .until(3)
+                       .run();
+  ASSERT_TRUE(r.status.ok) << r.status.reason;
+  const double part = stone / mass;  // of the stone's impulses, on both bodies
+  const double lands = w / kGravity * (1 + 2 * e / (1 - e)),
+               left = 3 - part * mu * (1 + e) * w / (1 - e);
+  EXPECT_NEAR(time_of(r, "table.sticks"), lands + left / (part * mu * kGravity), 1e-7);
+  EXPECT_NEAR(last(r, "way.rate"), 0, 1e-12);
+  EXPECT_LT(last(r, "table.friction_work"), 0);
+  EXPECT_LT(r.energy_error_max, 1e-8);
+  EXPECT_NEAR(last(r, "table.reaction1"), stone * kGravity, 1e-9);
+  // Apart from the wall nothing rubs.
+  EXPECT_EQ(r.trajectory.column("way.rate").front(), 3);
+}
+
+TEST(SlippingWall, MistakesAreNamed) {
+  const auto refused = [](const WallOptions& o) {
+    return refusal([&] { (void)thrown_onto_a_wall(o).model(); });
+  };
+  EXPECT_THAT(refused({.distance = "height.position", .friction = 0.3}),
+              HasSubstr("wall 'table': friction: a distance has no point that slips"));
+  EXPECT_THAT(refused({.distance = "height.position", .slip = "way.rate"}),
+              HasSubstr("slip: expected friction beside it"));
+  EXPECT_THAT(refused({.distance = "height.position", .friction = -1, .slip = "way.rate"}),
+              HasSubstr("friction: got -1, expected at least 0"));
+  EXPECT_THAT(refused({.distance = "height.position", .friction = 0.1, .slip = "way.position"}),
+              HasSubstr("slip: expected a formula of rates of joints"));
+}
+
 }  // namespace
 }  // namespace hamel

@@ -125,8 +125,10 @@ std::vector<Coupling> Assembly::slipping_couplings() {
     add(part.name + ".low", "q - limit", part.stop[0], link, {});
     add(part.name + ".high", "limit - q", part.stop[1], link, {});
   }
-  for (const auto& part : parts_.walls_)
+  for (const auto& part : parts_.walls_) {
     if (auto found = wall(part)) out.push_back(std::move(*found));
+    if (auto found = slip_of_wall(part)) out.push_back(std::move(*found));
+  }
   for (const Coupling& one : out) check_taken(one.name);
   return out;
 }
@@ -140,6 +142,26 @@ std::optional<Coupling> Assembly::wall(const Mechanism::WallPart& part) {
   formula.formula = part.distance;
   formula.constants = part.constants;
   auto out = coupling(formula, "wall", "distance");
+  if (out) out->slips = true;
+  return out;
+}
+
+std::optional<Coupling> Assembly::slip_of_wall(const Mechanism::WallPart& part) {
+  if (!is_size(part.friction))
+    wrong(part, "wall", fmt::format("friction: got {}, expected at least 0", *part.friction));
+  if (part.friction && part.slip.empty())
+    wrong(part, "wall",
+          "friction: a distance has no point that slips; expected slip = \"...\" beside it, the "
+          "velocity along the wall, linear in rates");
+  if (!part.friction && !part.slip.empty())
+    wrong(part, "wall", "slip: expected friction beside it");
+  if (!part.friction || part.slip.empty()) return {};
+  Mechanism::CouplingPart formula;
+  formula.name = part.name;
+  formula.where = part.where;
+  formula.rates = part.slip;
+  formula.constants = part.constants;
+  auto out = coupling(formula, "wall", "slip");
   if (out) out->slips = true;
   return out;
 }
@@ -168,6 +190,13 @@ void Assembly::add_law(const Multibody& system, const std::string& name,
 }
 
 void Assembly::add_law(const Coupling& coupling, int place) {
+  for (const auto& part : parts_.walls_) {  // behind that of its distance
+    if (part.name != coupling.name || !coupling.of_rates()) continue;
+    if (model_.contact_laws.empty() || model_.contact_laws.back().name != part.name) return;
+    model_.contact_laws.back().tangential = {place};
+    model_.contact_laws.back().friction = *part.friction;
+    return;
+  }
   ContactLaw law;
   law.name = coupling.name;
   law.of_joint = true;

@@ -135,11 +135,14 @@ bool FileParts::is_held(const std::string& number) const {
 void FileParts::wall(const toml::table& table) {
   std::string name;
   WallOptions o;
-  read_.entries(
-      table, {{"name", read_.read(name)},
-              {"distance", [&](const Node& node,
-                               const std::string& key) { o.distance = read_.formula(node, key); }},
-              {"restitution", read_.read(o.restitution)}});
+  const auto formula = [&](std::string& to) {
+    return [this, &to](const Node& node, const std::string& key) { to = read_.formula(node, key); };
+  };
+  read_.entries(table, {{"name", read_.read(name)},
+                        {"distance", formula(o.distance)},
+                        {"restitution", read_.read(o.restitution)},
+                        {"friction", read_.read(o.friction)},
+                        {"slip", formula(o.slip)}});
   for (const auto& [constant, value] : read_.formulas.constants()) o.constants[constant] = {value};
   m_.wall(name, o);
 }

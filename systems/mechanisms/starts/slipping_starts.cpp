@@ -55,7 +55,9 @@ std::vector<Starts::SlippingPart> Starts::closed_parts(const VectorXd& phi) cons
     else parts.push_back({word.part, {row}});
   }
   std::erase_if(parts, [&](const SlippingPart& part) {  // those that are open
-    return std::ranges::any_of(part.rows, [&](int row) { return phi[row] > 1e-9; });
+    return std::ranges::any_of(system_->kept(), [&](int row) {
+      return words[static_cast<size_t>(row)].part == part.name && phi[row] > 1e-9;
+    });
   });
   return parts;
 }

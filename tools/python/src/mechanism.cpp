@@ -161,11 +161,13 @@ void bind_contacts(nb::class_<ByParts>& mechanism) {
       .def(
           "wall",
           [](ByParts& self, const std::string& name, const std::string& distance,
-             double restitution) {
-            self.wall(name, {distance, restitution, {}});
+             double restitution, const std::optional<double>& friction, const std::string& slip) {
+            self.wall(name, {distance, restitution, {}, friction, slip});
           },
-          "name"_a, nb::kw_only(), "distance"_a, "restitution"_a = 0.0,
-          "What joint coordinates run against: distance, a formula of them, is not negative.")
+          "name"_a, nb::kw_only(), "distance"_a, "restitution"_a = 0.0, "friction"_a = nb::none(),
+          "slip"_a = "",
+          "What joint coordinates run against: distance, a formula of them, is not negative; with "
+          "friction slip is the velocity along it, linear in rates.")
       .def(
           "contact",
           [](ByParts& self, const std::string& kind, const std::string& name,
