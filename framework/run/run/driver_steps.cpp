@@ -113,6 +113,9 @@ void Driver::take_steps(long count, bool to_end) {
     steps_left_ -= kernel().whole_steps() - whole;
     count -= kernel().whole_steps() - whole;
     if (!observe_steps(before, begin, to_end && reached_end())) over_ = true;
+    if (to_end && result_.status.ok && !over_ && node_.step == before && !reached_end())
+      result_.status = {false, node_.step + 1, node_.time, node_.residual,
+                        fmt::format("no step leads on from t = {:.12g}", node_.time)};
     if (!result_.status.ok || node_.step == before) break;  // failed, or at the limit
     if (to_end && request_.progress && Clock::now() >= next_progress) {
       report_progress((node_.time - from) / (until - from));

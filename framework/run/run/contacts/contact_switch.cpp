@@ -1,6 +1,7 @@
 // A run with contacts at a switch: what it does to the state, and the piece that follows.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -18,6 +19,8 @@ constexpr double kTogether = 1e-9;
 constexpr double kSlow = 1e-6;
 // Reactions this near to the rims of their cones, relative to these, are on them at once.
 constexpr double kOnRim = 1e-9;
+// A rate behind an impact that is this part of the speeds of the contact is round-off of them.
+constexpr double kNoRate = 1e-14;
 // A slip that is this part of one that has grown has grown too.
 constexpr double kGrownToo = 0.5;
 
@@ -139,7 +142,8 @@ std::string ContactKernel::strike_all(int first) {
     const bool was_closed = contact(i).mode != ContactMode::open && dynamics().law(i).normal;
     if (strikes[at] == 0 && !was_closed) continue;
     const double scale = strikes[at] != 0 ? speeds[at] : followed(i).speed;
-    const bool leaves = dynamics().gap_rate(i) > 1e-12 * scale;
+    const bool leaves =
+        dynamics().gap_rate(i) > std::max(1e-12 * scale, kNoRate * followed(i).speed);
     contact(i).mode = leaves ? ContactMode::open : ContactMode::rolls;
     if (leaves) followed(i).opened = time_;
     if (strikes[at] == 0) continue;
@@ -210,7 +214,7 @@ double ContactKernel::first_step(double step) {
     const double rate = dynamics().gap_rate(i), a = -dynamics().gap_acceleration(i);
     if (rate > 0 && a > 0) out = std::min(out, rate / a);
   }
-  return out;
+  return std::max(out, std::numeric_limits<double>::epsilon() * 4 * std::abs(time_));
 }
 
 // Where all contacts roll, by rows that are independent, the system itself, whose kernel takes the
