@@ -9,6 +9,9 @@
 namespace hamel {
 namespace {
 
+// A height that others hold gives way to its load by no more than this, of what it would alone.
+constexpr double kHeld = 1e-9;
+
 std::vector<int> rows_of_none(const Mechanics& mechanics, const std::vector<ContactLaw>& laws) {
   std::vector<int> out;
   for (int row = 0; row < mechanics.constraint_count(); ++row) {
@@ -188,7 +191,7 @@ void ContactDynamics::add_rows(int i, ContactMode mode) {
 }
 
 // The contact problem of contact i with the others as they are: their multipliers, the first `m`,
-// are eliminated.
+// are eliminated. The direction stays where they leave its normal reaction open.
 void ContactDynamics::find_first_direction(const ContactStates& states, int i) {
   on_.clear();
   for (int k = 0; k < count(); ++k)
@@ -218,6 +221,8 @@ void ContactDynamics::find_first_direction(const ContactStates& states, int i) {
     }
   }
   const bool normal = law(i).normal.has_value();
+  // Three other legs hold its height: its load is shared, and not known here.
+  if (normal && !(g(0, 0) > kHeld * row_times(row_of(m), responses_.col(m)))) return;
   solve_contact(g, c,
                 {.first = 0,
                  .normal = normal,
