@@ -230,6 +230,12 @@ void ContactDynamics::find_first_direction(const ContactStates& states, int i) {
                  .friction = law(i).friction,
                  .bound = law(i).friction * law(i).load},
                 solutions_);
+  take_nearest_slide(i);
+}
+
+// The direction of the solution that slides and is nearest to the known one.
+void ContactDynamics::take_nearest_slide(int i) {
+  const bool normal = law(i).normal.has_value();
   Eigen::Vector2d& out = directions_[static_cast<size_t>(i)];
   const Eigen::Vector2d known = out;
   double nearest = 0;

@@ -154,6 +154,7 @@ class ContactDynamics {
   void find_direction(const ContactStates& states, int i);
   // That of (5), nearest to the one that it has.
   void find_first_direction(const ContactStates& states, int i);
+  void take_nearest_slide(int i);
   // M_A of column_, or of a row of A, into a column of responses_.
   void respond(int column);
   void respond_to(int row, int column);
