@@ -94,8 +94,9 @@ double leaves_at(double a0, double mu, double apart) {
 TEST(SlidingPairs, BallDownADome) {
   const double radius = 0.7, apart = radius + kBall;
   EXPECT_NEAR(slides_at(0.1, 0.3), 0.6208051218962687, 1e-14);
-  for (const auto& [a0, mu, heading] : std::vector<std::array<double, 3>>{
+  for (const auto& one : std::vector<std::array<double, 3>>{
            {0.1, 0.3, 0}, {0.1, 0.3, 1.1}, {0.3, 0.7, -2.3}, {0.2, 0.1, 0.4}}) {
+    const double a0 = one[0], mu = one[1], heading = one[2];
     SCOPED_TRACE(testing::Message() << a0 << " " << mu << " " << heading);
     const Point at = {apart * std::sin(a0) * std::cos(heading),
                       apart * std::sin(a0) * std::sin(heading), 1 + apart * std::cos(a0)};
