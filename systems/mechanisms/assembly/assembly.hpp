@@ -97,6 +97,9 @@ class Assembly {
   /// Dry friction, brakes and stops of joints, and walls, as couplings that do not always hold.
   std::vector<mechanisms::Coupling> slipping_couplings();
   std::optional<mechanisms::Coupling> wall(const Mechanism::WallPart& part);
+  std::optional<mechanisms::Coupling> row_of_wall(const Mechanism::WallPart& part,
+                                                  Mechanism::CouplingPart row,
+                                                  const std::string& key);
   std::optional<mechanisms::Coupling> slip_of_wall(const Mechanism::WallPart& part);
   /// Is this the name of a row of the friction or of a stop of a joint?
   static bool is_of_joint(const std::string& row, const Mechanism::JointPart& part);

@@ -133,17 +133,23 @@ std::vector<Coupling> Assembly::slipping_couplings() {
   return out;
 }
 
+// A row that does not always hold.
+std::optional<Coupling> Assembly::row_of_wall(const Mechanism::WallPart& part,
+                                              Mechanism::CouplingPart row, const std::string& key) {
+  row.name = part.name;
+  row.where = part.where;
+  row.constants = part.constants;
+  auto out = coupling(row, "wall", key);
+  if (out) out->slips = true;
+  return out;
+}
+
 std::optional<Coupling> Assembly::wall(const Mechanism::WallPart& part) {
   if (!(part.restitution >= 0 && part.restitution <= 1))
     wrong(part, "wall", fmt::format("restitution: got {}, expected in [0, 1]", part.restitution));
-  Mechanism::CouplingPart formula;
-  formula.name = part.name;
-  formula.where = part.where;
-  formula.formula = part.distance;
-  formula.constants = part.constants;
-  auto out = coupling(formula, "wall", "distance");
-  if (out) out->slips = true;
-  return out;
+  Mechanism::CouplingPart distance;
+  distance.formula = part.distance;
+  return row_of_wall(part, std::move(distance), "distance");
 }
 
 std::optional<Coupling> Assembly::slip_of_wall(const Mechanism::WallPart& part) {
@@ -156,14 +162,9 @@ std::optional<Coupling> Assembly::slip_of_wall(const Mechanism::WallPart& part) 
   if (!part.friction && !part.slip.empty())
     wrong(part, "wall", "slip: expected friction beside it");
   if (!part.friction || part.slip.empty()) return {};
-  Mechanism::CouplingPart formula;
-  formula.name = part.name;
-  formula.where = part.where;
-  formula.rates = part.slip;
-  formula.constants = part.constants;
-  auto out = coupling(formula, "wall", "slip");
-  if (out) out->slips = true;
-  return out;
+  Mechanism::CouplingPart slip;
+  slip.rates = part.slip;
+  return row_of_wall(part, std::move(slip), "slip");
 }
 
 // Place of a row among the kept ones, or -1.

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdio>
 #include <random>
 #include <string>
 #include <vector>
@@ -10,23 +9,12 @@
 #include <hamel/framework/inverse/fit.hpp>
 #include <hamel/hamel.hpp>
 
+#include "random_units.hpp"
+
 namespace hamel {
 namespace {
 
-/// So many new units are an old one.
-struct Units {
-  double length = 1, mass = 1, time = 1;
-  double of(double lengths, double masses, double times) const {
-    return std::pow(length, lengths) * std::pow(mass, masses) * std::pow(time, times);
-  }
-};
-
-Units random_units(unsigned seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> power(-1, 1);
-  const auto draw = [&](double decades) { return std::pow(10, decades * power(random)); };
-  return {draw(6), draw(6), draw(3)};
-}
+using namespace test;
 
 /// A fit, and what the new units make of each of its numbers.
 struct Case {
@@ -73,16 +61,8 @@ Case sleigh(const Units& in) {
 
 /// No angles: sizes are those of the motion. A constant input whose guess is 0.
 Case cart(const Units& in) {
-  const std::string path = testing::TempDir() + "fit_units_cart.toml";
-  FILE* system = std::fopen(path.c_str(), "w");
-  std::fputs(
-      "name = \"cart\"\ngroup = \"r2\"\ninertia = [\"m\", \"m\"]\nforce = [\"force - k*x1\", "
-      "\"0.3*force - k*x2^3/l^2\"]\n[parameters]\nm = { value = 1 }\nk = { value = 1 }\nl = { "
-      "value = 1 }\n[inputs]\nforce = { unit = \"N\" }\n",
-      system);
-  std::fclose(system);
   const double speed = in.of(1, 0, -1), stiffness = in.of(0, 1, -2), force = in.of(1, 1, -2);
-  const Simulation truth = simulate(path)
+  const Simulation truth = simulate(cart_file("fit_units_cart"))
                                .set("m", 1.3 * in.mass)
                                .set("k", 0.8 * stiffness)
                                .set("l", in.length)

@@ -4,36 +4,20 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <map>
-#include <random>
 #include <string>
 #include <vector>
 
 #include <hamel/framework/inverse/motion_plan.hpp>
 #include <hamel/systems/simulate_typed.hpp>
 
+#include "random_units.hpp"
+
 namespace hamel {
 namespace {
 
-/// So many new units are an old one; an old cost is so many new ones.
-struct Units {
-  double length = 1, mass = 1, time = 1, cost = 1;
-  double of(double lengths, double masses, double times) const {
-    return std::pow(length, lengths) * std::pow(mass, masses) * std::pow(time, times);
-  }
-  double torque() const { return of(2, 1, -2); }
-  double force() const { return of(1, 1, -2); }
-  double weight(double input) const { return cost / (input * input * time); }
-};
-
-Units random_units(unsigned seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> power(-1, 1);
-  const auto draw = [&](double decades) { return std::pow(10, decades * power(random)); };
-  return {draw(6), draw(6), draw(3), draw(4)};
-}
+using namespace test;
 
 PlanRequest file(const std::string& name) {
   const char* root = std::getenv("HAMEL_SOURCE");
@@ -98,16 +82,8 @@ PlanRequest segway(const Units& in) {
 
 /// No angles: sizes are those of the way and of the start's velocity.
 PlanRequest cart(const Units& in) {
-  const std::string path = testing::TempDir() + "plan_units_cart.toml";
-  FILE* system = std::fopen(path.c_str(), "w");
-  std::fputs(
-      "name = \"cart\"\ngroup = \"r2\"\ninertia = [\"m\", \"m\"]\nforce = [\"force - k*x1\", "
-      "\"0.3*force - k*x2^3/l^2\"]\n[parameters]\nm = { value = 1 }\nk = { value = 1 }\nl = { "
-      "value = 1 }\n[inputs]\nforce = { unit = \"N\" }\n",
-      system);
-  std::fclose(system);
   PlanRequest out;
-  out.run.system = path;
+  out.run.system = cart_file("plan_units_cart");
   out.run.parameters = {{"m", {1.3 * in.mass}}, {"k", {0.8 * in.of(0, 1, -2)}}, {"l", {in.length}}};
   out.run.start.velocity = {0.4 * in.of(1, 0, -1), -0.2 * in.of(1, 0, -1)};
   out.run.until = 3 * in.time;
