@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <hamel/framework/graph/system_formulas.hpp>
 #include <hamel/framework/lie/geometry.hpp>
 #include <hamel/groups/se2.hpp>
 #include <hamel/groups/so2.hpp>
@@ -17,11 +18,18 @@ namespace {
 constexpr int kMost = 60;
 constexpr int kOmega = 0, kV = 1, kAlpha = 2;  // w_j is column kAlpha + j, j >= 1
 
-using Plane = Eigen::Vector2d;
+template <class T>
+using PlaneOf = Eigen::Matrix<T, 2, 1>;
+using Plane = PlaneOf<double>;
 
 // n_i and e_i of the car (0) and the trailers.
-struct Headings {
-  std::array<Plane, kMost + 1> n;
+template <class T>
+struct HeadingsOf {
+  std::array<PlaneOf<T>, kMost + 1> n;
+  const PlaneOf<T>& along(int i) const { return n[static_cast<size_t>(i)]; }
+  PlaneOf<T> across(int i) const { return {-along(i)[1], along(i)[0]}; }
+};
+struct Headings : HeadingsOf<double> {
   explicit Headings(const double* g, int count) {
     n[0] = {1, 0};
     g += Packing<SE2>::size;
@@ -30,11 +38,9 @@ struct Headings {
       n[static_cast<size_t>(i)] = {alpha.c, alpha.s};
     }
   }
-  const Plane& along(int i) const { return n[static_cast<size_t>(i)]; }
-  Plane across(int i) const { return {-along(i)[1], along(i)[0]}; }
 };
 
-class Train final : public Mechanics {
+class Train final : public Mechanics, public graph::HasSystemFormulas {
  public:
   explicit Train(const NTrailer& system)
       : n_(system.count()), lengths_(1, 0.0), masses_{system.mass}, moments_{system.moment} {
@@ -51,47 +57,38 @@ class Train final : public Mechanics {
   bool constant_inertia() const override { return false; }
 
   void inertia(const double* g, Matrix out) const override {
-    const Headings h(g, n_);
     zero(out);
-    out(kOmega, kOmega) = moments_[0];
-    out(kV, kV) = out(kV + 1, kV + 1) = behind_[0];
-    for (int j = 1; j <= n_; ++j) {
-      const double lever = at(lengths_, j) * at(behind_, j);
-      for (int k = 1; k < j; ++k) {
-        const double both = lever * at(lengths_, k) * h.along(j).dot(h.along(k));
-        out(kAlpha + j, kAlpha + k) = out(kAlpha + k, kAlpha + j) = both;
-      }
-      out(kAlpha + j, kAlpha + j) = lever * at(lengths_, j) + at(moments_, j);
-      const Plane push = -lever * h.across(j);
-      for (int k = 0; k < 2; ++k) out(kAlpha + j, kV + k) = out(kV + k, kAlpha + j) = push[k];
-    }
-    // omega is in every w_j.
-    for (int j = 1; j <= n_; ++j) {
-      const auto column = out.col(kAlpha + j);
-      out(kV, kOmega) += column[kV];
-      out(kV + 1, kOmega) += column[kV + 1];
-      const double sum = column.tail(n_).sum();
-      out(kAlpha + j, kOmega) = out(kOmega, kAlpha + j) = sum;
-      out(kOmega, kOmega) += sum;
-    }
-    out(kOmega, kV) = out(kV, kOmega);
-    out(kOmega, kV + 1) = out(kV + 1, kOmega);
+    fill_inertia(Headings(g, n_), out);
   }
 
   void constraints(double /*t*/, const double* g, Matrix a, Vector b) const override {
-    const Headings h(g, n_);
     zero(a);
     b.setZero();
-    for (int i = 0; i <= n_; ++i) {
-      const Plane e = h.across(i);
-      a(i, kV) = e[0];
-      a(i, kV + 1) = e[1];
-      for (int j = 1; j <= i; ++j) {
-        const double lever = -at(lengths_, j) * h.along(i).dot(h.along(j));
-        a(i, kAlpha + j) = lever;
-        a(i, kOmega) += lever;
-      }
-    }
+    fill_rows(Headings(g, n_), a);
+  }
+
+  graph::SystemFormulas system_formulas(std::span<const graph::Number> variables) const override {
+    using graph::Number;
+    using NumberMatrix = Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic>;
+    HeadingsOf<Number> h;
+    h.n[0] = {Number(1), Number(0)};
+    for (size_t i = 1; i <= static_cast<size_t>(n_);
+         ++i)  // behind the angle and the place of the car
+      h.n[i] = {cos(variables[2 + i]), sin(variables[2 + i])};
+    NumberMatrix inertia = NumberMatrix::Zero(dim(), dim()),
+                 a = NumberMatrix::Zero(constraint_count(), dim());
+    fill_inertia(h, inertia);
+    fill_rows(h, a);
+    const auto rows_of = [](const NumberMatrix& m) {
+      std::vector<std::vector<Number>> out;
+      for (Eigen::Index i = 0; i < m.rows(); ++i)
+        out.emplace_back(m.row(i).begin(), m.row(i).end());
+      return out;
+    };
+    graph::SystemFormulas out;
+    out.inertia = rows_of(inertia);
+    out.rows = rows_of(a);
+    return out;
   }
 
   /// The rows are e_i . u_i, u_i = u_{i-1} - L_i w_i e_i.
@@ -136,6 +133,48 @@ class Train final : public Mechanics {
   }
 
  private:
+  // Fills a matrix of zeros.
+  template <class T, class M>
+  void fill_inertia(const HeadingsOf<T>& h, M&& out) const {
+    out(kOmega, kOmega) = moments_[0];
+    out(kV, kV) = out(kV + 1, kV + 1) = behind_[0];
+    for (int j = 1; j <= n_; ++j) {
+      const double lever = at(lengths_, j) * at(behind_, j);
+      for (int k = 1; k < j; ++k) {
+        const T both = lever * at(lengths_, k) * h.along(j).dot(h.along(k));
+        out(kAlpha + j, kAlpha + k) = out(kAlpha + k, kAlpha + j) = both;
+      }
+      out(kAlpha + j, kAlpha + j) = lever * at(lengths_, j) + at(moments_, j);
+      const PlaneOf<T> push = -lever * h.across(j);
+      for (int k = 0; k < 2; ++k) out(kAlpha + j, kV + k) = out(kV + k, kAlpha + j) = push[k];
+    }
+    // omega is in every w_j.
+    for (int j = 1; j <= n_; ++j) {
+      const auto column = out.col(kAlpha + j);
+      out(kV, kOmega) += column[kV];
+      out(kV + 1, kOmega) += column[kV + 1];
+      const T sum = column.tail(n_).sum();
+      out(kAlpha + j, kOmega) = out(kOmega, kAlpha + j) = sum;
+      out(kOmega, kOmega) += sum;
+    }
+    out(kOmega, kV) = out(kV, kOmega);
+    out(kOmega, kV + 1) = out(kV + 1, kOmega);
+  }
+
+  template <class T, class M>
+  void fill_rows(const HeadingsOf<T>& h, M&& a) const {
+    for (int i = 0; i <= n_; ++i) {
+      const PlaneOf<T> e = h.across(i);
+      a(i, kV) = e[0];
+      a(i, kV + 1) = e[1];
+      for (int j = 1; j <= i; ++j) {
+        const T lever = -at(lengths_, j) * h.along(i).dot(h.along(j));
+        a(i, kAlpha + j) = lever;
+        a(i, kOmega) += lever;
+      }
+    }
+  }
+
   static double& at(std::vector<double>& v, int i) { return v[static_cast<size_t>(i)]; }
   static double at(const std::vector<double>& v, int i) { return v[static_cast<size_t>(i)]; }
   /// Clears a matrix without gaps at once: Eigen's loop over its columns takes longer than all

@@ -20,6 +20,7 @@
 #include <hamel/systems/rolling_ball.hpp>
 #include <hamel/systems/routh_sphere.hpp>
 #include <hamel/systems/segway.hpp>
+#include <hamel/systems/snakeboard.hpp>
 #include <hamel/systems/suslov_in_potential.hpp>
 #include <hamel/systems/veselova.hpp>
 
@@ -70,22 +71,16 @@ Numbers entries_of(const Vector& v) {
   return out;
 }
 
-// Forces of inputs that are constant and linear in them, B u: read off at unit inputs.
-template <class S>
-Numbers force_of_inputs(const S& system, const FormulaPlace& at) {
-  using G = typename S::Group;
-  Numbers out(G::dim);
-  if constexpr (has_input_force<S>()) {
-    const auto count = static_cast<Eigen::Index>(at.inputs.size());
-    for (Eigen::Index j = 0; j < count; ++j) {
-      const auto unit = InputValues(Eigen::VectorXd::Unit(count, j));
-      const Vec<G::dim> column =
-          system.force(0, G::template identity<double>(), Vec<G::dim>::Zero(), unit);
-      for (size_t i = 0; i < out.size(); ++i)
-        out[i] += column[static_cast<Eigen::Index>(i)] * at.inputs[static_cast<size_t>(j)];
-    }
+// B u, of inputs whose effect is constant and linear in them: read off at unit inputs.
+template <class Effect>
+void add_inputs(const FormulaPlace& at, const Effect& effect, Numbers& out) {
+  const auto count = static_cast<Eigen::Index>(at.inputs.size());
+  for (Eigen::Index j = 0; j < count; ++j) {
+    const auto column = effect(InputValues(Eigen::VectorXd::Unit(count, j)));
+    out.resize(static_cast<size_t>(column.size()));
+    for (size_t i = 0; i < out.size(); ++i)
+      out[i] += column[static_cast<Eigen::Index>(i)] * at.inputs[static_cast<size_t>(j)];
   }
-  return out;
 }
 
 template <class S>
@@ -96,16 +91,29 @@ graph::SystemFormulas formulas_of_type(const Parameters& given, const FormulaPla
   typename S::Group::template Element<Number> g;
   const Number* from = at.element.data();
   take(from, g);
+  const auto identity = S::Group::template identity<double>();
 
   graph::SystemFormulas out;
   if constexpr (requires { system.inertia(); }) out.inertia = rows_of(system.inertia());
   else out.inertia = rows_of(system.inertia(g));
   if constexpr (requires { system.constraints(); }) out.rows = rows_of(system.constraints());
   else if constexpr (requires { system.constraints(g); }) out.rows = rows_of(system.constraints(g));
-  if constexpr (requires { system.drift(g); }) out.drift = entries_of(system.drift(g));
+  else
+    static_assert(
+        !requires { system.constraints(identity); }, "rows of doubles alone");
+  if constexpr (requires { system.drift(at.t, g); }) out.drift = entries_of(system.drift(at.t, g));
+  else if constexpr (requires { system.drift(g); }) out.drift = entries_of(system.drift(g));
+  else static_assert(!has_drift<S>(), "b of doubles alone");
   if constexpr (requires { system.holonomic(g); }) out.holonomic = entries_of(system.holonomic(g));
   if constexpr (requires { system.potential(g); }) out.potential = system.potential(g);
-  out.force = force_of_inputs(system, at);
+  if constexpr (has_input_drift<S>())
+    add_inputs(
+        at, [&](const InputValues& u) { return system.drift(0, identity, u); }, out.drift);
+  if constexpr (has_input_force<S>()) {
+    const auto rest = Vec<S::Group::dim>::Zero();
+    add_inputs(
+        at, [&](const InputValues& u) { return system.force(0, identity, rest, u); }, out.force);
+  }
   return out;
 }
 
@@ -131,6 +139,7 @@ void add_recorded_systems() {
   add_recorded<RollingBall>();
   add_recorded<RouthSphere>();
   add_recorded<Segway>();
+  add_recorded<Snakeboard>();
   add_recorded<SuslovInPotential>();
   add_recorded<Veselova>();
 }

@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include <hamel/framework/mechanics/general_system.hpp>
@@ -82,32 +83,51 @@ struct Snakeboard {
     for (int k = 3; k < 6; ++k) i(0, k) = i(k, 0) = i(k, k);
     return i;
   }
-  Mat<5, 6> constraints(const Element& g) const {
-    const auto &front = g.part<2>(), &back = g.part<3>();
-    Mat<5, 6> a = Mat<5, 6>::Zero();
-    a.row(0) << half_length * front.c, -front.s, front.c, 0, 0, 0;
-    a.row(1) << -half_length * back.c, -back.s, back.c, 0, 0, 0;
-    a.bottomRightCorner<3, 3>().setIdentity();
+  auto constraints(const auto& g) const {
+    const auto &front = g.template part<2>(), &back = g.template part<3>();
+    using T = std::decay_t<decltype(front.c)>;
+    MatT<T, 5, 6> a = MatT<T, 5, 6>::Zero();
+    a(0, 0) = half_length * front.c;
+    a(1, 0) = -half_length * back.c;
+    for (int i = 0; i < 2; ++i) {
+      a(i, 1) = i == 0 ? -front.s : -back.s;
+      a(i, 2) = i == 0 ? front.c : back.c;
+    }
+    for (int i = 0; i < 3; ++i) a(2 + i, 3 + i) = T(1.0);
     return a;
   }
-  Vec<5> drift(double t, const Element& /*g*/) const {
-    const Vec<3> rates = prescribed(t).rates;
-    return {0, 0, rates[0], rates[1], rates[2]};
+  template <class T>
+  VecT<T, 5> drift(const T& t, const auto& /*g*/) const {
+    const VecT<T, 3> rates = prescribed(t).rates;
+    VecT<T, 5> b;
+    b << T(0.0), T(0.0), rates[0], rates[1], rates[2];
+    return b;
   }
 
   /// The rider's motion: psi, front, back since t = 0, and their rates; q'.
+  template <class T>
   struct Rider {
-    Vec<3> turned, rates;
-    double momentum_rate;
+    VecT<T, 3> turned, rates;
+    T momentum_rate;
   };
-  Rider prescribed(double t) const {
-    const double s = std::sin(frequency * t), c = frequency * std::cos(frequency * t);
+  template <class T>
+  Rider<T> prescribed(const T& t) const {
+    using std::cos;
+    using std::sin;
+    const T s = sin(frequency * t), c = frequency * cos(frequency * t);
     const Vec<3> swing(rotor_amplitude, steering_amplitude, -steering_amplitude);
-    return {s * swing, c * swing, -rotor_inertia * rotor_amplitude * frequency * frequency * s};
+    Rider<T> out;
+    for (int i = 0; i < 3; ++i) {
+      out.turned[i] = swing[i] * s;
+      out.rates[i] = swing[i] * c;
+    }
+    out.momentum_rate = -(rotor_inertia * rotor_amplitude * frequency * frequency) * s;
+    return out;
   }
+
   /// At rest on the ground, or running forwards, while the rider swings; axles at +-steering.
   Start running(double speed, double steering = 0) const {
-    const Vec<3> rates = prescribed(0).rates;
+    const Vec<3> rates = prescribed(0.0).rates;
     return {.configuration = {0, 0, 0, 0, steering, -steering},
             .velocity = {speed * std::tan(steering) / half_length, speed, 0, rates[0], rates[1],
                          rates[2]},
