@@ -5,12 +5,11 @@
 
 #include <fmt/format.h>
 
-#include <hamel/framework/analysis/central_differences.hpp>
 #include <hamel/framework/analysis/conserved.hpp>
+#include <hamel/framework/analysis/recorded_rows.hpp>
 #include <hamel/framework/lie/decompositions.hpp>
 #include <hamel/framework/lie/geometry.hpp>
 #include <hamel/framework/mechanics/frame.hpp>
-#include <hamel/framework/metric/metric.hpp>
 
 namespace hamel {
 namespace {
@@ -21,55 +20,17 @@ constexpr double kMotionTolerance = 1e-12;  // far below the change that what is
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
-// The fields X_a, and their brackets at one configuration.
-class Frame {
- public:
-  Frame(const Geometry& geometry, const Mechanics& mechanics, const Vector& g, const Matrix& frame)
-      : geometry_(geometry), mechanics_(mechanics), place_(mechanics), g_(g), frame_(frame) {}
-
-  /// [X_a, X_b](g).
-  Vector bracket(Eigen::Index a, Eigen::Index b) {
-    Vector out = ad(frame_.col(a), frame_.col(b));
-    if (!mechanics_.constant_constraints()) out += derivative(b, a) - derivative(a, b);
-    return out;
+// ad_x y.
+Vector ad(const Geometry& geometry, const Vector& x, const Vector& y) {
+  Vector out(x.size()), mu = Vector::Zero(x.size()), row(x.size());
+  for (Eigen::Index i = 0; i < x.size(); ++i) {  // <mu, ad_x y> = <ad_x^T mu, y>
+    mu[i] = 1;
+    geometry.ad_transpose(x.data(), mu.data(), row.data());
+    out[i] = row.dot(y);
+    mu[i] = 0;
   }
-
- private:
-  Vector field(Eigen::Index a, const Vector& g) {
-    place_.set(mechanics_, 0, g.data());
-    place_.b.setZero();
-    Vector e = frame_.col(a);
-    place_.admissible(place_.inertia * e, e);  // the I-orthogonal projection onto ker A(g)
-    return e;
-  }
-  // dX_a(g) X_b(g), in steps of the size of the velocity.
-  Vector derivative(Eigen::Index a, Eigen::Index b) {
-    Vector moved(g_.size());
-    const auto along = [&](double e) {
-      const Vector step = e * frame_.col(b);
-      geometry_.tau(step.data(), moved.data());
-      geometry_.compose(g_.data(), moved.data(), moved.data());
-      return field(a, moved);
-    };
-    return CentralDifferences(along, steps_of_scale(1 / frame_.col(b).norm())).derivative(1).value;
-  }
-  Vector ad(const Vector& x, const Vector& y) const {  // <mu, ad_x y> = <ad_x^T mu, y>
-    Vector out(x.size()), mu = Vector::Zero(x.size()), row(x.size());
-    for (Eigen::Index i = 0; i < x.size(); ++i) {
-      mu[i] = 1;
-      geometry_.ad_transpose(x.data(), mu.data(), row.data());
-      out[i] = row.dot(y);
-      mu[i] = 0;
-    }
-    return out;
-  }
-
-  const Geometry& geometry_;
-  const Mechanics& mechanics_;
-  Metric<> place_;
-  Vector g_;
-  Matrix frame_;
-};
+  return out;
+}
 
 }  // namespace
 
@@ -126,15 +87,16 @@ Analysis analyse(const Registry& registry, const std::string& system, const Para
   out.holonomic_rows = mechanics->holonomic_rows();
   out.frame = hamel_frame(inertia, a);
 
-  out.growth = growth_of(*geometry, *mechanics, g.data(),
-                         what == AnalysisOf::verdict ? kFewFields : kMostFields,
-                         natural_units(components_of(run.system()), *mechanics, g.data()));
+  const auto rows = recorded_rows(run.system(), *geometry, g.data());
+  out.growth = growth_of(
+      *geometry, *mechanics, g.data(), what == AnalysisOf::verdict ? kFewFields : kMostFields,
+      natural_units(components_of(run.system()), *mechanics, g.data()), rows ? &*rows : nullptr);
   if (what == AnalysisOf::verdict) return out;
-  Frame fields(*geometry, *mechanics, g, out.frame);
   out.structure.assign(static_cast<size_t>(out.m), Matrix::Zero(out.m, out.m));
   for (Eigen::Index i = 0; i < out.m; ++i) {
     for (Eigen::Index j = 0; j < i; ++j) {
-      const Vector along = out.frame.transpose() * (inertia * fields.bracket(i, j));
+      const Vector along =
+          out.frame.transpose() * (inertia * ad(*geometry, out.frame.col(i), out.frame.col(j)));
       for (Eigen::Index d = 0; d < out.m; ++d) {
         out.structure[static_cast<size_t>(d)](i, j) = along[d];
         out.structure[static_cast<size_t>(d)](j, i) = -along[d];

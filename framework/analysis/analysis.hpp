@@ -3,6 +3,7 @@
 // Frame and brackets at the start. X_a(g) = P(g) e_a, e_a the Hamel frame at g0 and P(g) the
 // projection onto ker A(g) along I^-1 A^T; in left trivialisation
 //   [X, Y](g) = dY(g) X - dX(g) Y + ad_{X(g)} Y(g).
+// At the start dX_a is orthogonal to d in the metric: structure constants are those of ad.
 // The growth of d, d + [d, d], ... decides whether the constraint is integrable (no growth) and how
 // many brackets span the tangent space (Chow). growth.hpp has it, the drift of affine rows and the
 // tolerances. Conserved quantities are found numerically, not proved: combinations of energy, body

@@ -147,56 +147,92 @@ bool has_drift(const Geometry& geometry, const Mechanics& mechanics, const Vecto
   return false;
 }
 
+// Brackets of one to `depth` fields at places beside g, in the coordinates of Fields.
+class Source {
+ public:
+  virtual ~Source() = default;
+  virtual std::vector<Generation> generations(const Vector& place, int depth) = 0;
+  /// A place nearby: within the length over which the fields are smooth at g.
+  virtual double length() = 0;
+};
+class ByDifferences final : public Source {
+ public:
+  explicit ByDifferences(Fields& fields) : fields_(fields) {}
+  std::vector<Generation> generations(const Vector& place, int depth) override {
+    return carried::generations(fields_, place, depth);
+  }
+  double length() override { return own_length(fields_, Vector::Zero(fields_.coordinates())); }
+
+ private:
+  Fields& fields_;
+};
+class ByFormulas final : public Source {
+ public:
+  ByFormulas(Fields& fields, ExactBrackets& exact) : fields_(fields), exact_(exact) {}
+  std::vector<Generation> generations(const Vector& place, int depth) override {
+    const double t = fields_.with_drift() ? place[fields_.coordinates() - 1] : 0;
+    return exact_.generations(fields_.element(place), t, depth);
+  }
+  double length() override { return exact_.length(); }
+
+ private:
+  Fields& fields_;
+  ExactBrackets& exact_;
+};
+
 // Reach of fields that change with the place. nearby: what brackets span beside `here`, if that is
 // decided; near_zero: as of Growth.
-// exact: null where the fields are not known as formulas.
-Reach reach_by_brackets(Fields& fields, ExactBrackets* exact, int possible, int most, int& nearby,
-                        bool& near_zero) {
-  const auto brackets = [&](const Vector& place, int depth) {
-    return exact == nullptr ? generations(fields, place, depth)
-                            : exact->generations(fields.element(place), depth);
-  };
-  const double least = exact == nullptr ? kNew : kNewExact;
+struct Reached {
+  Reach here;
+  int nearby = -1;
+  bool near_zero = false;
+};
+// least: what is smaller is no new direction. Empty: the source has no brackets.
+std::optional<Reached> reach_by_brackets(Source& source, const Fields& fields, int possible,
+                                         int most, double least) {
   const auto all = static_cast<int>(fields.coordinates());
-  const Vector here = Vector::Zero(all);
-  Reach reach;
+  Reached out;
   const int deepest = std::min(std::max(all, 4), most);
-  Vector there(all);
-  const double length = own_length(fields, here);
-  for (int i = 0; i < all; ++i) there[i] = 0.3 * length * std::cos(1.0 + 2.0 * i);
   int looked = 0;
   for (const int depth : {std::min(3, deepest), std::min(5, deepest), deepest}) {
     if (depth == looked) break;
     looked = depth;
-    reach = reach_of(brackets(here, depth), fields.count(), possible, least);
-    if (reach.dimensions.back() == possible) nearby = possible;
-    else if (nearby < 0 && (depth == deepest || closed_at(reach, possible) >= 0)) {
-      const Reach generic = reach_of(brackets(there, depth), fields.count(), possible, least);
-      near_zero = generic.near_zero;
-      nearby = closed_at(generic, possible);
+    const std::vector<Generation> found = source.generations(Vector::Zero(all), depth);
+    if (found.empty()) return std::nullopt;
+    out.here = reach_of(found, fields.count(), possible, least);
+    if (out.here.dimensions.back() == possible) out.nearby = possible;
+    else if (out.nearby < 0 && (depth == deepest || closed_at(out.here, possible) >= 0)) {
+      const double length = source.length();
+      Vector there(all);
+      for (int i = 0; i < all; ++i) there[i] = 0.3 * length * std::cos(1.0 + 2.0 * i);
+      const std::vector<Generation> beside = source.generations(there, depth);
+      if (beside.empty()) return std::nullopt;
+      const Reach generic = reach_of(beside, fields.count(), possible, least);
+      out.near_zero = generic.near_zero;
+      out.nearby = closed_at(generic, possible);
     }
-    if (reach.dimensions.back() == nearby) break;
+    if (out.here.dimensions.back() == out.nearby) break;
   }
-  // Paths decide what nested brackets leave to round-off.
-  if (nearby < 0 && exact == nullptr && !near_zero && !reach.near_zero) {
-    const Reach whole = reach_of({orbit(fields, here)}, fields.count(), possible, 0);
-    near_zero = whole.near_zero;
-    if (!whole.round_off) nearby = whole.dimensions.back();
-  }
-  return reach;
+  return out;
 }
 
-std::optional<ExactBrackets> exact_brackets(const graph::VectorFields* formulas, const Vector& g,
-                                            const Vector& units) {
-  if (formulas == nullptr) return std::nullopt;
-  ExactBrackets out(*formulas, g, units);
-  return out.possible() ? std::optional(std::move(out)) : std::nullopt;
+// With paths, which decide what nested brackets leave to round-off.
+Reached reach_by_differences(Fields& fields, int possible, int most) {
+  ByDifferences source(fields);
+  Reached out = *reach_by_brackets(source, fields, possible, most, kNew);
+  if (out.nearby < 0 && !out.near_zero && !out.here.near_zero) {
+    const Vector here = Vector::Zero(fields.coordinates());
+    const Reach whole = reach_of({orbit(fields, here)}, fields.count(), possible, 0);
+    out.near_zero = whole.near_zero;
+    if (!whole.round_off) out.nearby = whole.dimensions.back();
+  }
+  return out;
 }
 
 }  // namespace
 
 Growth growth_of(const Geometry& geometry, const Mechanics& mechanics, const double* at, int most,
-                 const std::vector<double>& given) {
+                 const std::vector<double>& given, const graph::RowFields* formulas) {
   Vector units = Vector::Ones(geometry.dim());
   if (!given.empty()) units = Eigen::Map<const Vector>(given.data(), geometry.dim());
   const Vector g = Eigen::Map<const Vector>(at, geometry.size());
@@ -207,28 +243,29 @@ Growth growth_of(const Geometry& geometry, const Mechanics& mechanics, const dou
              possible = all - mechanics.holonomic_rows();
   const Vector here = Vector::Zero(all);
   const int own = out.with_drift ? 1 : 0;
-  Reach reach{{static_cast<int>(fields.count())}};
-  int nearby = -1;
+  Reached reached{{{static_cast<int>(fields.count())}}};
   if (fields.count() == possible || fields.count() == 0) {
-    nearby = static_cast<int>(fields.count());
+    reached.nearby = static_cast<int>(fields.count());
   } else if (mechanics.constant_constraints()) {
-    reach = constant_reach(geometry, units, fields(here));
-    nearby = reach.dimensions.back();
+    reached.here = constant_reach(geometry, units, fields(here));
+    reached.nearby = reached.here.dimensions.back();
   } else {
-    const auto* known = dynamic_cast<const graph::HasVectorFields*>(&mechanics);
-    const auto formulas = known != nullptr && !out.with_drift ? known->vector_fields(at) : nullptr;
-    std::optional<ExactBrackets> exact = exact_brackets(formulas.get(), g, units);
-    reach =
-        reach_by_brackets(fields, exact ? &*exact : nullptr, possible, most, nearby, out.near_zero);
+    std::optional<Reached> exactly;
+    if (formulas != nullptr) {
+      ExactBrackets exact(*formulas, geometry, units, out.with_drift);
+      ByFormulas source(fields, exact);
+      exactly = reach_by_brackets(source, fields, possible, most, kNewExact);
+    }
+    reached = exactly ? std::move(*exactly) : reach_by_differences(fields, possible, most);
   }
-  out.looked_at = static_cast<int>(reach.dimensions.size());
-  out.round_off = reach.round_off;
-  out.near_zero = (out.near_zero || reach.near_zero) && nearby < possible;
-  if (out.near_zero) nearby = -1;
-  auto& d = reach.dimensions;
+  out.looked_at = static_cast<int>(reached.here.dimensions.size());
+  out.round_off = reached.here.round_off;
+  out.near_zero = (reached.near_zero || reached.here.near_zero) && reached.nearby < possible;
+  if (out.near_zero) reached.nearby = -1;
+  auto& d = reached.here.dimensions;
   while (d.size() > 1 && d.back() == d[d.size() - 2]) d.pop_back();
   for (const int dimension : d) out.dimensions.push_back(dimension - own);
-  out.nearby = nearby < 0 ? nearby : nearby - own;
+  out.nearby = reached.nearby < 0 ? reached.nearby : reached.nearby - own;
   return out;
 }
 

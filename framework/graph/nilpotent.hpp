@@ -16,28 +16,36 @@
 namespace hamel::graph {
 
 /// Values of outputs of a recording at numbers with k units, laid out number by number, 2^k
-/// coefficients each, that of S at the sum of 2^i of its units.
+/// coefficients each, that of S at the sum of 2^i of its units. Every operation has its Taylor
+/// series; a value is not finite where that has none.
 class NilpotentEvaluation {
  public:
-  /// The recording is complete.
-  NilpotentEvaluation(const Recording& recording, const std::vector<Number>& outputs);
+  /// The recording is complete, and lives longer.
+  NilpotentEvaluation(const Recording& recording, std::vector<Number> outputs);
 
-  /// Are all operations among those that it knows: + - * /, minimum, maximum, absolute value, root,
-  /// rounding, selections, exp, log, sine and cosine?
-  bool possible() const { return possible_; }
+  /// Which inputs the outputs depend on.
+  const std::vector<bool>& needs() const { return needs_; }
   /// inputs: those of the recording, 2^k coefficients each; those beyond are 0. noise: of that
   /// relative size, random, on the operands of each operation, which shows what round-off does
-  /// (Vignes, Discrete stochastic arithmetic, Numerical Algorithms 37, 2004); 0: none.
-  std::vector<double> operator()(int units, std::span<const double> inputs, double noise = 0);
+  /// (Vignes, Discrete stochastic arithmetic, Numerical Algorithms 37, 2004); 0: none. The result
+  /// holds until the next call.
+  const std::vector<double>& operator()(int units, std::span<const double> inputs,
+                                        double noise = 0);
+  /// A random number in [-1, 1).
+  double random();
 
  private:
-  const Recording& recording_;
-  const std::vector<Number>& outputs_;
+  void take(const Node& node, size_t slot, size_t size, std::span<const double> inputs);
+  const double* shake(const double* x, double noise, std::vector<double>& out);
+
+  const Recording* recording_;
+  std::vector<Number> outputs_;
   std::vector<int> slots_;  // of the values of the nodes that the outputs need, else -1
   size_t slot_count_ = 0;
-  std::vector<double> values_;
+  std::vector<bool> needs_;
+  std::vector<double> values_, results_;
+  std::vector<bool> plain_;  // by slot: without nilpotent part
   std::uint32_t seed_ = 1;
-  bool possible_ = true;
 };
 
 /// out += a b, of 2^k coefficients each.

@@ -261,19 +261,6 @@ void Multibody::accelerations(double t, const double* g, ConstVector xi, Vector 
   out.setConstant(std::numeric_limits<double>::quiet_NaN());  // the rows depend on each other
 }
 
-std::shared_ptr<const graph::VectorFields> Multibody::vector_fields(const double* g) const {
-  const auto linear = [](const Coupling& coupling) { return coupling.formula.linear(); };
-  if (has_drift() || rows_.ground.height || !std::ranges::all_of(rows_.couplings, linear))
-    return nullptr;
-  std::vector<double> there(g, g + tree_.size());
-  there.resize(state_.size(), 0.0);
-  try {
-    return record_fields(parts(), there);
-  } catch (const std::domain_error&) {
-    return nullptr;
-  }
-}
-
 void Multibody::find_constants(const std::vector<std::vector<double>>& poses) {
   const int n = dim(), k = constraint_count();
   Eigen::MatrixXd inertia(n, n), a(k, n), first_a(k, n);

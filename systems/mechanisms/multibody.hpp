@@ -33,7 +33,7 @@ struct ImpliedRow {
 };
 
 class Multibody final : public Mechanics,
-                        public graph::HasVectorFields,
+                        public graph::HasRowFields,
                         public graph::HasMotionTerms,
                         public graph::HasSystemFormulas,
                         public HasImpliedRows {
@@ -79,8 +79,8 @@ class Multibody final : public Mechanics,
   void begin() const override;
   bool has_accelerations() const override;
   void accelerations(double t, const double* g, ConstVector xi, Vector out) const override;
-  /// Null where b is not 0, or changes with time, and where couplings are not linear.
-  std::shared_ptr<const graph::VectorFields> vector_fields(const double* g) const override;
+  /// Empty where a prescribed rate changes with time.
+  std::optional<graph::RowFields> row_fields() const override;
   graph::MotionTerms motion_terms(const graph::MotionVariables& at) const override;
   /// Throws std::domain_error as motion_terms().
   graph::SystemFormulas system_formulas(std::span<const graph::Number> variables) const override;

@@ -22,7 +22,7 @@
 #include <vector>
 
 #include <hamel/framework/graph/code.hpp>
-#include <hamel/framework/graph/vector_fields.hpp>
+#include <hamel/framework/graph/row_fields.hpp>
 #include <hamel/framework/lie/geometry.hpp>
 #include <hamel/systems/mechanisms/forces.hpp>
 #include <hamel/systems/mechanisms/rows.hpp>
@@ -104,10 +104,8 @@ struct MechanismPrograms {
 /// few schemes ask for it.
 FilledProgram record_rates(const MechanismParts& parts);
 
-/// The admissible velocities near a state, A xi = 0, as fields. Throws std::domain_error where the
-/// rows depend on each other there.
-std::shared_ptr<const graph::VectorFields> record_fields(const MechanismParts& parts,
-                                                         std::span<const double> state);
+/// The rows that are kept, and what moves the numbers of a state; without values of these.
+graph::RowFields record_row_fields(const MechanismParts& parts);
 
 /// The accelerations, in one frame.
 class MotionProgram {

@@ -36,18 +36,27 @@ RecordedMechanism::Numbers RecordedMechanism::inputs(const char* name, size_t co
   return out;
 }
 
-RecordedMechanism::Numbers RecordedMechanism::row_rates() const {
-  Numbers lacks, moving = g, moves = bodies.element_rates();
-  for (const RecordedRow& row : rows) lacks.push_back(-row.value);
-  moving.insert(moving.end(), rates.begin(), rates.end());
-  moves.insert(moves.end(), slopes.begin(), slopes.end());
-  const Numbers moves_of_feet = foot_rates();
-  moving.insert(moving.end(), feet.begin(), feet.end());
-  moves.insert(moves.end(), moves_of_feet.begin(), moves_of_feet.end());
-  moving.insert(moving.end(), coupled.begin(), coupled.end());
+RecordedMechanism::Numbers RecordedMechanism::number_rates() const {
+  Numbers out = bodies.element_rates();
+  const auto append = [&out](const Numbers& more) {
+    out.insert(out.end(), more.begin(), more.end());
+  };
+  append(Numbers(xi.size() + signals.size()));
+  append(foot_rates());
   for (const int link : parts_.rows.coupled_links)
-    moves.push_back(xi[static_cast<size_t>(parts_.tree.first(link))]);
-  return graph::along(lacks, moving, moves);
+    out.push_back(xi[static_cast<size_t>(parts_.tree.first(link))]);
+  append(Numbers(closures.size()));
+  append(slopes);
+  append(Numbers(slopes.size() + gaps.size()));
+  return out;
+}
+
+RecordedMechanism::Numbers RecordedMechanism::row_rates() const {
+  Numbers lacks, all;
+  for (const RecordedRow& row : rows) lacks.push_back(-row.value);
+  for (const auto* part : {&g, &xi, &signals, &feet, &coupled, &closures, &rates, &slopes, &gaps})
+    all.insert(all.end(), part->begin(), part->end());
+  return graph::along(lacks, all, number_rates());
 }
 
 // The equations of each foot stay 0.

@@ -26,6 +26,8 @@ class RecordedMechanism {
   const std::shared_ptr<graph::Recording>& recording() const { return recording_; }
 
   RowInputs row_inputs() const { return {g, xi, feet, coupled, closures, rates, gaps}; }
+  /// Rates of all inputs along the motion, xi held: 0 where nothing moves them.
+  Numbers number_rates() const;
   /// db/dt - (dA/dt) xi along the motion, xi held.
   Numbers row_rates() const;
   /// out += -dV of the springs; the forces beside the potential.
