@@ -7,6 +7,7 @@
 
 #include <hamel/framework/analysis/steady_equations.hpp>
 #include <hamel/framework/lie/decompositions.hpp>
+#include <hamel/framework/mechanics/coordinate_rates.hpp>
 #include <hamel/framework/mechanics/inputs.hpp>
 #include <hamel/framework/run/names/registry.hpp>
 
@@ -14,6 +15,8 @@ namespace hamel {
 namespace {
 
 using namespace reduced;
+
+constexpr double kRoundOff = 1e-15;  // of rates of coordinates
 
 NumberMatrix numbers_of(const Matrix& m) {
   NumberMatrix out(static_cast<int>(m.rows()), static_cast<int>(m.cols()));
@@ -56,27 +59,36 @@ Vector columns_of(const SteadyEquations& equations, const SteadyPoint& at, const
 struct Slopes {
   Matrix value, error;
 };
-Slopes column_slopes(const SteadyEquations& equations, const SteadyPoint& at,
-                     const Matrix& directions, const Vector& sizes) {
+// Of coordinates by the rates that their group states, exact, or by differences where it states
+// none; of velocities.
+Slopes column_slopes(const SteadyEquations& equations, const CoordinateRates& rates,
+                     const SteadyPoint& at, const Matrix& directions, const Vector& sizes) {
   const Flow& flow = equations.flow();
-  const int n = equations.dim();
-  Slopes out{.value = Matrix(equations.geometry().columns() + n, directions.cols()), .error = {}};
+  const int n = equations.dim(), columns = equations.geometry().columns();
+  Slopes out{.value = Matrix::Zero(columns + n, directions.cols()), .error = {}};
   out.error = out.value;
+  Vector coordinates(columns);
+  equations.geometry().coordinates(at.g.data(), coordinates.data());
   for (Eigen::Index j = 0; j < directions.cols(); ++j) {
+    const Vector direction = directions.col(j), shift = direction.head(n);
+    out.value.col(j).tail(n) = direction.tail(n);
+    if (rates.along(coordinates.data(), shift.data(), out.value.col(j).data())) {
+      out.error.col(j).head(columns) = kRoundOff * out.value.col(j).head(columns).cwiseAbs();
+      continue;
+    }
     // Step as large as a unit: columns are functions of the element, smooth at the scale of angles.
-    const Vector direction = directions.col(j);
-    const double size = direction.cwiseQuotient(sizes).lpNorm<Eigen::Infinity>();
-    const double scale = size > 0 ? 1 / size : 1;
-    double grain = 0;
-    const Vector shift = direction.head(n);
     const double part = shift.cwiseQuotient(sizes.head(n)).lpNorm<Eigen::Infinity>();
-    if (part > 0) grain = flow.steps(at.g, shift * (size / part)).grain;
+    if (!(part > 0)) continue;
+    const auto moved = [&](double e) {
+      Vector there(columns);
+      equations.geometry().coordinates(flow.moved(at.g, e * shift).data(), there.data());
+      return there;
+    };
     const Derivative d =
-        CentralDifferences([&](double e) { return columns_of(equations, at, e * direction); },
-                           steps_of_scale(scale, grain))
+        CentralDifferences(moved, steps_of_scale(1 / part, flow.steps(at.g, shift).grain))
             .derivative(1);
-    out.value.col(j) = d.value;
-    out.error.col(j) = d.error;
+    out.value.col(j).head(columns) = d.value;
+    out.error.col(j).head(columns) = d.error;
   }
   return out;
 }
@@ -110,6 +122,64 @@ Names names_of(const SystemModel& model) {
     out.columns.push_back(component.name);
   }
   out.preference.tail(n).setConstant(10);
+  // Of equals the first, whatever their round-off.
+  for (Eigen::Index i = 0; i < 2 * n; ++i)
+    out.preference[i] *= 1 - 1e-3 * static_cast<double>(i) / static_cast<double>(2 * n);
+  return out;
+}
+
+// Of the acceleration, then of A xi - b, by each input: exact, with their round-off.
+Slopes exact_input_slopes(const SteadyEquations& equations, const SteadyPoint& at,
+                          const Vector& sizes) {
+  const Flow& flow = equations.flow();
+  const RecordedMotion& recorded = *flow.recorded();
+  const int n = equations.dim(), k = flow.constraint_count(), count = recorded.inputs();
+  Matrix directions = Matrix::Zero(2 * n + count, count);
+  directions.bottomRows(count).setIdentity();
+  const auto slopes_at = [&](const Vector& g, const Vector& xi) {
+    const std::vector<MotionValues> terms = recorded.along(g, xi, directions);
+    Matrix out(n + k, count);
+    out.topRows(n) = recorded.acceleration_slopes(g, xi, terms);
+    for (int j = 0; j < count; ++j)
+      out.col(j).tail(k) =
+          terms[static_cast<size_t>(j)].rows * xi - terms[static_cast<size_t>(j)].drift;
+    return out;
+  };
+  Vector along(2 * n);
+  for (int i = 0; i < 2 * n; ++i) along[i] = sizes[i] * std::sin(12.9898 * (i + 1));
+  const Vector noise = noise_of(
+      [&](double e) -> Vector {
+        return slopes_at(flow.moved(at.g, e * along.head(n)), at.xi + e * along.tail(n)).reshaped();
+      },
+      0x1p-30);
+  return {.value = slopes_at(at.g, at.xi), .error = noise.reshaped(n + k, count)};
+}
+
+// The same by differences.
+Slopes differenced_input_slopes(const SteadyEquations& equations,
+                                const std::shared_ptr<const Geometry>& geometry,
+                                const SystemModel& model, const SteadyPoint& at) {
+  const std::vector<InputTable> zeros(model.inputs.size(), InputTable{{}, {0}, false});
+  const auto inputs = std::make_shared<Inputs>(model.inputs, zeros);
+  const Flow driven(geometry, model.drive(inputs), equations.flow().scales(), nullptr);
+  const Vector extents = driven.extents(at.g);
+  const Eigen::Index rows = driven.dim() + driven.constraint_count(),
+                     count = std::ssize(model.inputs);
+  Slopes out{.value = Matrix(rows, count), .error = Matrix(rows, count)};
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const auto values = [&](double u) {
+      inputs->set(static_cast<size_t>(i), u);
+      Vector value(rows);
+      value << driven.acceleration(at.g, at.xi, extents), driven.slip(at.g, at.xi);
+      return value;
+    };
+    StepRange steps = steps_of_any_scale();
+    steps.noise = noise_of(values, 1e-6);
+    const Derivative d = CentralDifferences(values, steps).derivative(1);
+    inputs->set(static_cast<size_t>(i), 0);
+    out.value.col(i) = d.value;
+    out.error.col(i) = d.error;
+  }
   return out;
 }
 
@@ -117,36 +187,26 @@ Names names_of(const SystemModel& model) {
 // rates are left out.
 Slopes input_slopes(const SteadyEquations& equations,
                     const std::shared_ptr<const Geometry>& geometry, const SystemModel& model,
-                    const SteadyPoint& at, const Matrix& dual, Linearisation& out) {
-  const int n = equations.dim();
+                    const SteadyPoint& at, const ReducedLinearisation& linear, Linearisation& out) {
+  const Matrix& dual = linear.dual;
+  const int n = equations.dim(), k = equations.flow().constraint_count();
   Slopes slopes{.value = Matrix(dual.rows(), 0), .error = Matrix(dual.rows(), 0)};
   if (!model.drive) return slopes;
-  const std::vector<InputTable> zeros(model.inputs.size(), InputTable{{}, {0}, false});
-  const auto inputs = std::make_shared<Inputs>(model.inputs, zeros);
-  const Flow driven(geometry, model.drive(inputs), equations.flow().scales());
-  const Vector extents = driven.extents(at.g);
+  const Slopes all = equations.flow().recorded() != nullptr
+                         ? exact_input_slopes(equations, at, linear.sizes)
+                         : differenced_input_slopes(equations, geometry, model, at);
   for (size_t i = 0; i < model.inputs.size(); ++i) {
-    const int k = driven.constraint_count();
-    CentralDifferences differences(
-        [&](double u) {
-          inputs->set(i, u);
-          Vector value(n + k);
-          value << driven.acceleration(at.g, at.xi, extents), driven.slip(at.g, at.xi);
-          return value;
-        },
-        steps_of_any_scale());
-    const Derivative d = differences.derivative(1);
-    inputs->set(i, 0);
-    const bool slips = ((d.value.tail(k).cwiseAbs() - d.error.tail(k)).array() > 0).any();
-    if (slips) {
+    const Vector value = all.value.col(static_cast<Eigen::Index>(i)),
+                 error = all.error.col(static_cast<Eigen::Index>(i));
+    if (((value.tail(k).cwiseAbs() - error.tail(k)).array() > 0).any()) {  // it slips
       out.unused.push_back(model.inputs[i].name);
       continue;
     }
     out.inputs.push_back(model.inputs[i].name);
     for (Matrix* m : {&slopes.value, &slopes.error})
       m->conservativeResize(Eigen::NoChange, m->cols() + 1);
-    slopes.value.rightCols<1>() = dual.rightCols(n) * d.value.head(n);
-    slopes.error.rightCols<1>() = dual.rightCols(n).cwiseAbs() * d.error.head(n);
+    slopes.value.rightCols<1>() = dual.rightCols(n) * value.head(n);
+    slopes.error.rightCols<1>() = dual.rightCols(n).cwiseAbs() * error.head(n);
   }
   return slopes;
 }
@@ -183,12 +243,13 @@ Linearisation linearisation(const Registry& registry, const Simulation& run) {
   out.a = numbers_of(to_states * linear.flow * from_states);
   out.a_error = numbers_of(size_to * linear.error * size_from);
   out.embedding = numbers_of(embedding);
-  const Slopes inputs = input_slopes(equations, registry.geometry(model.group.name, "exp"), model,
-                                     at, linear.dual, out);
+  const Slopes inputs =
+      input_slopes(equations, registry.geometry(model.group.name, "exp"), model, at, linear, out);
   out.b = numbers_of(to_states * inputs.value);
   out.b_error = numbers_of(size_to * inputs.error);
 
   // Columns that no symmetry changes, here and where the states are others.
+  const CoordinateRates rates(model.group, registry.geometry(model.group.name, "exp"));
   const Eigen::Index columns = static_cast<Eigen::Index>(model.group.columns.size());
   std::vector<bool> changes(static_cast<size_t>(columns + equations.dim()), false);
   for (int sample = 0; sample < 3; ++sample) {
@@ -198,13 +259,14 @@ Linearisation linearisation(const Registry& registry, const Simulation& run) {
     const Vector z = linear.basis * x;
     const int n = equations.dim();
     const SteadyPoint there = {equations.flow().moved(at.g, z.head(n)), at.xi + z.tail(n), {}, 0};
-    const Slopes moved = column_slopes(equations, there, equations.orbit(there), linear.sizes);
+    const Slopes moved =
+        column_slopes(equations, rates, there, equations.orbit(there), linear.sizes);
     for (size_t i = 0; i < changes.size(); ++i) {
       const auto row = static_cast<Eigen::Index>(i);
       changes[i] = changes[i] || is_beyond(moved, row, 1e-8);
     }
   }
-  const Slopes slopes = column_slopes(equations, at, embedding, linear.sizes);
+  const Slopes slopes = column_slopes(equations, rates, at, embedding, linear.sizes);
   const Vector values = columns_of(equations, at, Vector::Zero(2 * equations.dim()));
   std::vector<Eigen::Index> kept;
   for (Eigen::Index i = 0; i < values.size(); ++i) {

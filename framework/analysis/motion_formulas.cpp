@@ -19,32 +19,6 @@ using Numbers = std::vector<Number>;
 
 constexpr size_t kMostSolved = 12;  // independent velocities
 
-graph::GroupShape shape_of(const SystemModel& model, const Geometry& geometry) {
-  graph::GroupShape out{factor_shapes(model.group), {}};
-  const int n = geometry.dim();
-  for (int i = 0; i < n; ++i) {
-    for (int j = 0; j < n; ++j) {
-      Eigen::VectorXd image(n);
-      geometry.ad_transpose(Eigen::VectorXd(Eigen::VectorXd::Unit(n, i)).data(),
-                            Eigen::VectorXd(Eigen::VectorXd::Unit(n, j)).data(), image.data());
-      out.structure.insert(out.structure.end(), image.begin(), image.end());
-    }
-  }
-  return out;
-}
-
-MotionTerms terms_of_system(const SystemModel& model, const Mechanics& mechanics, const double* g,
-                            const MotionVariables& at) {
-  if (const auto* known = dynamic_cast<const graph::HasMotionTerms*>(&mechanics))
-    return known->motion_terms(at);
-  const RecordedFormulas formulas = recorded_formulas(model, mechanics, g);
-  if (!formulas)
-    throw std::domain_error(
-        "its formulas are a type in C++ that is compiled for numbers; systems in files, "
-        "mechanisms and left-invariant systems have recorded ones");
-  return graph::terms_of(formulas(at.all()), at);
-}
-
 // The state, and places to either side of it: entries that vanish at one of them are no pivots.
 std::vector<graph::Sample> samples_near(const Geometry& geometry, const std::vector<double>& g,
                                         const std::vector<double>& velocity, size_t inputs) {
@@ -92,16 +66,42 @@ Numbers solve_in_frame(const MotionTerms& terms, const graph::Frame& frame) {
 
 }  // namespace
 
+graph::GroupShape group_shape(const SystemModel& model, const Geometry& geometry) {
+  graph::GroupShape out{factor_shapes(model.group), {}};
+  const int n = geometry.dim();
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) {
+      Eigen::VectorXd image(n);
+      geometry.ad_transpose(Eigen::VectorXd(Eigen::VectorXd::Unit(n, i)).data(),
+                            Eigen::VectorXd(Eigen::VectorXd::Unit(n, j)).data(), image.data());
+      out.structure.insert(out.structure.end(), image.begin(), image.end());
+    }
+  }
+  return out;
+}
+
+graph::MotionTerms recorded_terms(const SystemModel& model, const Mechanics& mechanics,
+                                  const double* g, const MotionVariables& at) {
+  if (const auto* known = dynamic_cast<const graph::HasMotionTerms*>(&mechanics))
+    return known->motion_terms(at);
+  const RecordedFormulas formulas = recorded_formulas(model, mechanics, g);
+  if (!formulas)
+    throw std::domain_error(
+        "its formulas are a type in C++ that is compiled for numbers; systems in files, "
+        "mechanisms and left-invariant systems have recorded ones");
+  return graph::terms_of(formulas(at.all()), at);
+}
+
 MotionFormulas record_motion(const SystemModel& model, const Mechanics& mechanics,
                              const Geometry& geometry, const std::vector<double>& element,
                              const std::vector<double>& velocity) {
   const auto recording = std::make_shared<graph::Recording>();
   std::vector<std::string> inputs;
   for (const InputField& input : model.inputs) inputs.push_back(input.name);
-  MotionVariables at(shape_of(model, geometry), model.group.columns, model.rates, inputs);
+  MotionVariables at(group_shape(model, geometry), model.group.columns, model.rates, inputs);
   if (!model.contact_laws.empty())
     throw std::domain_error("the rows that hold depend on which contacts and joints slide");
-  const MotionTerms terms = terms_of_system(model, mechanics, element.data(), at);
+  const MotionTerms terms = recorded_terms(model, mechanics, element.data(), at);
   if (const size_t m = velocity.size() - terms.rows.size(); m > kMostSolved)
     throw std::domain_error(fmt::format(
         "it has {} independent velocities; at most {} are solved as formulas", m, kMostSolved));

@@ -24,6 +24,13 @@ struct MotionFormulas {
   std::vector<int> independent;           // of xi
 };
 
+/// ad* of a group, and its factors.
+graph::GroupShape group_shape(const SystemModel& model, const Geometry& geometry);
+/// The terms of a system at variables of the current recording, wherever it has them; g: any
+/// element. Throws std::domain_error with the reason where it has none.
+graph::MotionTerms recorded_terms(const SystemModel& model, const Mechanics& mechanics,
+                                  const double* g, const graph::MotionVariables& at);
+
 /// Near a place and velocity. inputs: of the recorded system, by name. Throws std::domain_error
 /// with the reason where the system has no formulas, or more than 12 independent velocities.
 MotionFormulas record_motion(const SystemModel& model, const Mechanics& mechanics,

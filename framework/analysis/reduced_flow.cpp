@@ -43,7 +43,7 @@ Vector Flow::extents(const Vector& g) const {
   const int n = dim(), k = constraint_count();
   Vector out = Vector::Constant(n, 1);
   if (mechanics_->constant_inertia() && mechanics_->constant_constraints()) return out;
-  if (mechanics_->exact_rates()) return out;  // none is needed
+  if (recorded_ != nullptr || mechanics_->exact_rates()) return out;  // none is needed
   Matrix inertia(n, n), a(k, n);
   Vector b(k);
   Vector all(n * n + k * n + k);
@@ -127,6 +127,7 @@ void Flow::find_rates(const Vector& g, const Vector& xi, const Vector& extents, 
 }
 
 Vector Flow::acceleration(const Vector& g, const Vector& xi, const Vector& extents) const {
+  if (recorded_ != nullptr) return recorded_->acceleration(g, xi);
   const int n = dim(), k = constraint_count();
   Matrix inertia(n, n), a(k, n);
   Vector b(k), row_rate(k), change(n);
@@ -151,6 +152,22 @@ Vector Flow::acceleration(const Vector& g, const Vector& xi, const Vector& exten
   Vector right(n + k);
   right << change, row_rate;
   return Vector(whole.partialPivLu().solve(right)).head(n);
+}
+
+// The rows of phi are their differentials, the last rows of A.
+Matrix Flow::slopes(const Vector& g, const Vector& xi) const {
+  const int n = dim(), k = constraint_count(), held = holonomic_rows();
+  const std::vector<MotionValues> terms = recorded_->along(g, xi, Matrix::Identity(2 * n, 2 * n));
+  const Matrix rows = recorded_->at(g, xi).rows;
+  Matrix out = Matrix::Zero(n + held + k, 2 * n);
+  out.topRows(n) = recorded_->acceleration_slopes(g, xi, terms);
+  out.block(n, 0, held, n) = rows.bottomRows(held);
+  for (int j = 0; j < 2 * n; ++j) {
+    const MotionValues& d = terms[static_cast<size_t>(j)];
+    out.col(j).tail(k) = d.rows * xi - d.drift;
+  }
+  out.bottomRightCorner(k, n) += rows;
+  return out;
 }
 
 Vector Flow::momentum(const Vector& g, const Vector& xi) const {
@@ -226,6 +243,60 @@ void Flow::scale_blocks(const Vector& value, const Vector& velocity, Matrix& cha
     scale(phi, holonomic_rows(), change.bottomRows(holonomic_rows()).lpNorm<Eigen::Infinity>());
 }
 
+Matrix Flow::changes_by_differences(const Vector& g, const Vector& xi, const Matrix& back,
+                                    const Vector& speeds) const {
+  const int n = dim();
+  Matrix out(2 * n * n + 2 * n + holonomic_rows(), 2 * n);
+  for (int j = 0; j < 2 * n; ++j) {
+    const Vector eta = j < n ? Vector::Zero(n) : Vector(Vector::Unit(n, j - n));
+    const Vector delta = j < n ? Vector(back.col(j)) : eta;
+    Vector slope = Vector::Zero(out.rows());
+    differentiate(1 / speeds[j], [&](double e, double weight) {
+      slope += weight * kept(moved(g, e * delta), xi, eta, e);
+    });
+    out.col(j) = slope;
+  }
+  return out;
+}
+
+// With H = A U, U the units, P = H^+ H, in place of the force ad*_xi I xi + F - (dI/dt) xi, which
+// is kept with the inertia where F is: along (delta, -ad_eta xi), with the terms moved by -ad_eta,
+//   dP = M + M^T,  M = H^+ dH (1 - P),   d(H^+ b) = H^+ (db - dH H^+ b) + (1 - P) dH^T (H H^T)^-1 b.
+Matrix Flow::changes_of_formulas(const Vector& g, const Vector& xi, const Matrix& back,
+                                 Vector& value) const {
+  const int n = dim(), k = constraint_count(), held = holonomic_rows();
+  const MotionValues here = recorded_->at(g, xi);
+  const Matrix units = units_.asDiagonal(), h = here.rows * units;
+  const Matrix square = k > 0 ? dense::inverse(h * h.transpose()) : Matrix(0, 0);
+  const Matrix inverse = h.transpose() * square, onto = inverse * h,
+               off = Matrix::Identity(n, n) - onto;
+  const Vector drift = inverse * here.drift;
+  Matrix directions = Matrix::Zero(2 * n, 2 * n);
+  directions.topLeftCorner(n, n) = back;
+  directions.topRightCorner(n, n).setIdentity();
+  directions.bottomRightCorner(n, n) = ad(xi);  // -ad_eta xi = ad_xi eta
+  const std::vector<MotionValues> slopes = recorded_->along(g, xi, directions);
+  Vector phi(held);
+  mechanics_->holonomic(g.data(), phi);
+  value.resize(2 * n * n + 2 * n + held);
+  value << Matrix(units * here.inertia * units).reshaped(), onto.reshaped(), units * here.change,
+      drift, phi;
+  Matrix out(value.size(), 2 * n);
+  for (int j = 0; j < 2 * n; ++j) {
+    const MotionValues& d = slopes[static_cast<size_t>(j)];
+    const Matrix turn = j < n ? Matrix::Zero(n, n) : ad(Vector::Unit(n, j - n));
+    const Matrix inertia =
+        units * (d.inertia - turn.transpose() * here.inertia - here.inertia * turn) * units;
+    const Matrix dh = (d.rows - here.rows * turn) * units, m = inverse * dh * off;
+    const Vector change = units * (d.change - turn.transpose() * here.change);
+    const Vector moved_drift =
+        inverse * (d.drift - dh * drift) + off * dh.transpose() * (square * here.drift);
+    out.col(j) << inertia.reshaped(), (m + m.transpose()).reshaped(), change, moved_drift,
+        here.rows.bottomRows(held) * directions.col(j).head(n);
+  }
+  return out;
+}
+
 Matrix Flow::symmetries(const Vector& g, const Vector& xi, const Vector& reach) const {
   const int n = dim();
   Matrix changes(0, 2 * n), orbits(0, 2 * n);
@@ -240,19 +311,18 @@ Matrix Flow::symmetries(const Vector& g, const Vector& xi, const Vector& reach) 
     }
     const Vector here = moved(g, shift);
     const Matrix back = Ad_inverse(here);
-    const Vector value = kept(here, velocity, Vector::Zero(n), 0);
-    Matrix change(value.size(), 2 * n);
     Vector speeds(2 * n);
     for (int j = 0; j < 2 * n; ++j) {
-      const Vector eta = j < n ? Vector::Zero(n) : Vector(Vector::Unit(n, j - n));
-      const Vector delta = j < n ? Vector(back.col(j)) : eta;
-      const double speed = delta.cwiseQuotient(part * reach.head(n)).lpNorm<Eigen::Infinity>();
-      speeds[j] = speed;
-      Vector slope = Vector::Zero(value.size());
-      differentiate(1 / speed, [&](double e, double weight) {
-        slope += weight * kept(moved(here, e * delta), velocity, eta, e);
-      });
-      change.col(j) = slope;
+      const Vector delta = j < n ? Vector(back.col(j)) : Vector(Vector::Unit(n, j - n));
+      speeds[j] = delta.cwiseQuotient(part * reach.head(n)).lpNorm<Eigen::Infinity>();
+    }
+    Vector value;
+    Matrix change;
+    if (recorded_ != nullptr) {
+      change = changes_of_formulas(here, velocity, back, value);
+    } else {
+      value = kept(here, velocity, Vector::Zero(n), 0);
+      change = changes_by_differences(here, velocity, back, speeds);
     }
     if (sizes.size() == 0) sizes = speeds.cwiseInverse();
     change = change * sizes.asDiagonal();

@@ -1,5 +1,4 @@
-// The flow of a system and its symmetries, pointwise and by values only. For steady.cpp, not
-// installed.
+// The flow of a system and its symmetries, pointwise. For steady.cpp, not installed.
 //
 //   Z(g, xi) = (xi, a(g, xi)):  I a = ad*_xi I xi + force - (dI/dt) xi + A^T lambda,
 //                               A a = db/dt - (dA/dt) xi.
@@ -8,8 +7,10 @@
 //   X_(zeta, eta)(g, xi) = (Ad_g^-1 zeta + eta, -ad_eta xi),
 // and is a symmetry where inertia, ker A, drift, force and phi go with it. The left factor is the
 // symmetry of the space around (a level ground), the right one that of the body (a disk and its
-// axis). Derivatives are those of central_differences.hpp: along angles, and lengths of a system
-// that has a radius of gyration, in steps of that scale, along others in steps of any.
+// axis). Derivatives are exact where the system has formulas (recorded_motion.hpp). Those of a
+// system that is known by its values are those of central_differences.hpp: along angles, and
+// lengths of a system that has a radius of gyration, in steps of that scale, along others in steps
+// of any.
 #pragma once
 
 #include <memory>
@@ -18,6 +19,7 @@
 #include <Eigen/Core>
 
 #include <hamel/framework/analysis/central_differences.hpp>
+#include <hamel/framework/analysis/recorded_motion.hpp>
 #include <hamel/framework/lie/geometry.hpp>
 #include <hamel/framework/mechanics/mechanics.hpp>
 
@@ -38,14 +40,18 @@ void differentiate(double h, Add&& add) {
 
 class Flow {
  public:
-  /// scales: own_scales() of the system (natural_units.hpp).
+  /// scales: own_scales() of the system (natural_units.hpp). recorded: null where the system is
+  /// known by its values only.
   Flow(std::shared_ptr<const Geometry> geometry, std::shared_ptr<const Mechanics> mechanics,
-       Vector scales)
+       Vector scales, std::shared_ptr<const RecordedMotion> recorded)
       : geometry_(std::move(geometry)),
         mechanics_(std::move(mechanics)),
+        recorded_(std::move(recorded)),
         scales_(std::move(scales)),
         units_(scales_.unaryExpr([](double scale) { return scale > 0 ? scale : 1; })) {}
 
+  /// The formulas of the system, or null.
+  const std::shared_ptr<const RecordedMotion>& recorded() const { return recorded_; }
   int dim() const { return mechanics_->dim(); }
   int constraint_count() const { return mechanics_->constraint_count(); }
   int holonomic_rows() const { return mechanics_->holonomic_rows(); }
@@ -73,6 +79,8 @@ class Flow {
   Vector difference(const Vector& g, const Vector& h) const;
   /// a(g, xi). extents: of g, or of a place nearby.
   Vector acceleration(const Vector& g, const Vector& xi, const Vector& extents) const;
+  /// By (delta, nu), of formulas: a, phi, A xi - b, one below the other.
+  Matrix slopes(const Vector& g, const Vector& xi) const;
   /// I(g) xi.
   Vector momentum(const Vector& g, const Vector& xi) const;
   /// phi(g), and A xi - b.
@@ -98,9 +106,16 @@ class Flow {
   void scale_blocks(const Vector& value, const Vector& velocity, Matrix& change) const;
   // The quantities a symmetry keeps, at (g exp(e eta), Ad xi), seen from before the move.
   Vector kept(const Vector& g, const Vector& xi, const Vector& eta, double e) const;
+  // Their derivatives by the 2n generators (zeta, eta), by differences and of formulas; back:
+  // Ad_g^-1. value: the quantities.
+  Matrix changes_by_differences(const Vector& g, const Vector& xi, const Matrix& back,
+                                const Vector& speeds) const;
+  Matrix changes_of_formulas(const Vector& g, const Vector& xi, const Matrix& back,
+                             Vector& value) const;
 
   std::shared_ptr<const Geometry> geometry_;
   std::shared_ptr<const Mechanics> mechanics_;
+  std::shared_ptr<const RecordedMotion> recorded_;
   Vector scales_, units_;
 };
 

@@ -21,6 +21,14 @@ Vector to_vector(const std::vector<double>& v) {
   return Eigen::Map<const Vector>(v.data(), static_cast<Eigen::Index>(v.size()));
 }
 
+std::shared_ptr<const RecordedMotion> recorded_of(const SystemModel& model,
+                                                  const std::shared_ptr<const Geometry>& geometry,
+                                                  const Vector& g,
+                                                  const SteadyEquations* neighbour) {
+  return RecordedMotion::of(model, geometry, g,
+                            neighbour == nullptr ? nullptr : neighbour->flow().recorded());
+}
+
 std::shared_ptr<const Geometry> geometry_of(const Registry& registry, const SystemModel& model) {
   if (!model.mechanics->autonomous())
     throw ConfigError({fmt::format("{}: depends on time: it has no steady motion", model.name)});
@@ -80,7 +88,8 @@ SteadyEquations::SteadyEquations(const Registry& registry, const SystemModel& mo
     : geometry_(geometry_of(registry, model)),
       guess_g_(element_of(*geometry_, model, guess)),
       flow_(geometry_, model.mechanics,
-            to_vector(own_scales(components_of(model), *model.mechanics, guess_g_.data()))),
+            to_vector(own_scales(components_of(model), *model.mechanics, guess_g_.data())),
+            recorded_of(model, geometry_, guess_g_, neighbour)),
       guess_xi_(to_vector(guess.velocity)),
       names_(model) {
   along_ = flow_.momentum(guess_g_, guess_xi_).normalized();
@@ -163,7 +172,20 @@ Matrix SteadyEquations::carriers(const SteadyPoint& at) const {
   return out;
 }
 
+// W = (xi - Ad_g^-1 zeta - eta, a + ad_eta xi), and d(Ad_g^-1 zeta) = -ad_delta Ad_g^-1 zeta.
 Matrix SteadyEquations::derivative(const SteadyPoint& at) const {
+  if (flow_.recorded() == nullptr) return derivative_by_differences(at);
+  const int n = dim();
+  const Matrix slopes = flow_.slopes(at.g, at.xi);
+  Matrix out(n + slopes.rows(), 2 * n);
+  out.topLeftCorner(n, n) = -flow_.ad(flow_.Ad_inverse(at.g) * at.generator.head(n));
+  out.topRightCorner(n, n).setIdentity();
+  out.bottomRows(slopes.rows()) = slopes;
+  out.block(n, n, n, n) += flow_.ad(at.generator.tail(n));
+  return out;
+}
+
+Matrix SteadyEquations::derivative_by_differences(const SteadyPoint& at) const {
   const int n = dim();
   Matrix out = Matrix::Zero(2 * n + flow_.holonomic_rows() + flow_.constraint_count(), 2 * n);
   for (int j = 0; j < 2 * n; ++j) {

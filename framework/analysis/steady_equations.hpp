@@ -132,8 +132,16 @@ class SteadyEquations {
   void find_reach();
   CentralDifferences differences(const SteadyPoint& at, int number, const Reach& reach,
                                  const Vector& noise) const;
-  Vector noise_at(const SteadyPoint& at, const Reach& reach) const;
+  // Where all numbers change, a place beside a point, in steps that the equations are smooth over.
+  SteadyPoint point_beside(const SteadyPoint& at, const Reach& reach, double e) const;
+  // dF by (delta, nu), the generator held: of formulas, or by differences.
   Matrix derivative(const SteadyPoint& at) const;
+  Matrix derivative_by_differences(const SteadyPoint& at) const;
+  // The same, with errors.
+  struct Slope {
+    Matrix value, error;
+  };
+  Slope slope_with_error(const SteadyPoint& at) const;
 
   std::shared_ptr<const Geometry> geometry_;
   Vector guess_g_;

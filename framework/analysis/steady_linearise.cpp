@@ -62,17 +62,45 @@ CentralDifferences SteadyEquations::differences(const SteadyPoint& at, int numbe
           steps};
 }
 
-// Round-off of the equations near a point, in a direction in which all numbers change.
-Vector SteadyEquations::noise_at(const SteadyPoint& at, const Reach& reach) const {
+SteadyPoint SteadyEquations::point_beside(const SteadyPoint& at, const Reach& reach,
+                                          double e) const {
   const int n = dim();
   Vector direction(2 * n);
   for (int i = 0; i < 2 * n; ++i) direction[i] = reach.steps[i] * std::sin(12.9898 * (i + 1));
-  return noise_of(
+  return {.g = flow_.moved(at.g, e * direction.head(n)),
+          .xi = at.xi + e * direction.tail(n),
+          .generator = at.generator};
+}
+
+// The error of exact derivatives is their round-off, of differences that of their estimates, with
+// the round-off of values.
+SteadyEquations::Slope SteadyEquations::slope_with_error(const SteadyPoint& at) const {
+  constexpr double step = 0x1p-30;
+  const int n = dim();
+  Slope out;
+  if (flow_.recorded() != nullptr) {
+    out.value = derivative(at);
+    const Vector noise = noise_of(
+        [&](double e) { return Vector(derivative(point_beside(at, reach_, e)).reshaped()); }, step);
+    out.error = noise.reshaped(out.value.rows(), out.value.cols());
+    return out;
+  }
+  Reach reach = reach_;
+  reach.extents = flow_.extents(at.g);
+  const Vector noise = noise_of(
       [&](double e) {
-        return equations(at.generator, flow_.moved(at.g, e * direction.head(n)),
-                         at.xi + e * direction.tail(n), reach);
+        const SteadyPoint there = point_beside(at, reach, e);
+        return equations(there.generator, there.g, there.xi, reach);
       },
-      0x1p-30);
+      step);
+  out.value.resize(noise.size(), 2 * n);
+  out.error = out.value;
+  for (int j = 0; j < 2 * n; ++j) {
+    const Derivative d = differences(at, j, reach, noise).derivative(1);
+    out.value.col(j) = d.value;
+    out.error.col(j) = d.error;
+  }
+  return out;
 }
 
 // The field, phi and A xi - b along each of the 2n numbers: what they are smooth over, and how fast
@@ -113,18 +141,10 @@ void SteadyEquations::find_reach() {
 ReducedLinearisation SteadyEquations::linearise(const SteadyPoint& at) const {
   const int n = dim(), bound = flow_.holonomic_rows() + flow_.constraint_count();
   ReducedLinearisation out;
-  Reach reach = reach_;
-  reach.extents = flow_.extents(at.g);
-  const Vector noise = noise_at(at, reach);
-  Matrix whole(2 * n + bound, 2 * n), error(2 * n + bound, 2 * n);  // of W, phi, A xi - b
-  for (int j = 0; j < 2 * n; ++j) {
-    const Derivative d = differences(at, j, reach, noise).derivative(1);
-    whole.col(j) = d.value;
-    error.col(j) = d.error;
-  }
-  out.rate = reach.rate;
+  auto [whole, error] = slope_with_error(at);  // of W, phi, A xi - b
+  out.rate = reach_.rate;
   out.sizes.resize(2 * n);
-  out.sizes << flow_.units(), flow_.units() * reach.rate;
+  out.sizes << flow_.units(), flow_.units() * reach_.rate;
   const Matrix to_own = out.sizes.cwiseInverse().asDiagonal();
   whole = (whole * out.sizes.asDiagonal()).eval();
   error = (error * out.sizes.asDiagonal()).eval();
