@@ -18,7 +18,7 @@ using Numbers = std::vector<Number>;
 
 constexpr int kMostVelocities = 40;
 constexpr size_t kLanes = 8;
-constexpr double kSame = 1e-9;  // relative to its matrix: formulas are those of the system
+constexpr double kSameTerms = 1e-9;  // relative to its matrix: formulas are those of the system
 
 Numbers inputs_of(const char* name, size_t count) {
   Numbers out;
@@ -57,7 +57,7 @@ graph::Program::Outputs outputs_of(const Numbers& values, const std::vector<size
 }
 
 bool near(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, double size) {
-  return a.rows() == b.rows() && (a - b).norm() <= kSame * size;
+  return a.rows() == b.rows() && (a - b).norm() <= kSameTerms * size;
 }
 
 bool agrees(const RecordedMotion& recorded, const SystemModel& model, const Geometry& geometry,

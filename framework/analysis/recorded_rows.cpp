@@ -18,9 +18,9 @@ namespace {
 using graph::Number;
 using Numbers = std::vector<Number>;
 
-constexpr double kSame = 1e-9;  // relative to a row: formulas are those of the system
+constexpr double kSameRow = 1e-9;  // relative to a row: formulas are those of the system
 
-// Of t, the coordinates, the velocities and the inputs of a run, which are 0.
+// Rows as formulas of t, the coordinates, the velocities and the inputs of a run, which are 0.
 std::optional<graph::RowFields> rows_of_formulas(const SystemModel& model, const Geometry& geometry,
                                                  const double* g) {
   const RecordedFormulas formulas = recorded_formulas(model, *model.mechanics, g);
@@ -70,8 +70,8 @@ bool agree(const graph::RowFields& fields, const Mechanics& mechanics, const dou
     for (int i = 0; i < k; ++i) {
       const Eigen::Map<const Eigen::RowVectorXd> row(found.data() + i * n, n);
       const double lack = std::abs(found[static_cast<size_t>(k * n + i)] - b[i]);
-      if (!((row - a.row(i)).norm() <= kSame * a.row(i).norm() &&
-            lack <= kSame * (std::abs(b[i]) + a.row(i).norm())))
+      if (!((row - a.row(i)).norm() <= kSameRow * a.row(i).norm() &&
+            lack <= kSameRow * (std::abs(b[i]) + a.row(i).norm())))
         return false;
     }
   }
