@@ -34,8 +34,10 @@ const std::vector<std::string>& Equations::velocities() const { return system().
 const Start& Equations::start() const { return insides_->plan.config.start; }
 
 std::vector<double> Equations::rate(double t, const Start& state) const {
+  const Insides& at = *insides_;
   insides_->put(state, t);
-  return Insides::numbers_of(insides_->motion->acceleration(insides_->state));
+  return Insides::numbers_of(at.recorded != nullptr ? at.recorded->acceleration(at.g, at.xi, t)
+                                                    : at.motion->acceleration(at.state));
 }
 
 NumberMatrix Equations::inertia(const Start& state) const {

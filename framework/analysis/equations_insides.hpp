@@ -12,6 +12,7 @@
 #include <Eigen/Cholesky>
 
 #include <hamel/framework/analysis/equations.hpp>
+#include <hamel/framework/analysis/recorded_motion.hpp>
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/mechanics/system_model.hpp>
 #include <hamel/framework/run/run/driver.hpp>
@@ -25,6 +26,9 @@ struct Equations::Insides {
   const RunPlan& plan;
   const Mechanics& mechanics;
   std::unique_ptr<Reactions> motion;  // of systems with rows or without
+  // Formulas of a type whose rates are differences, in a run without inputs: null where there is
+  // none.
+  std::shared_ptr<const RecordedMotion> recorded;
   Eigen::VectorXd g, xi;
   Snapshot state;
 
@@ -53,6 +57,9 @@ struct Equations::Insides {
                                          plan.contacts);
     g.setZero(plan.geometry->size());
     xi.setZero(mechanics.dim());
+    put({}, 0);
+    if (!mechanics.exact_rates() && plan.setup.inputs == nullptr)
+      recorded = RecordedMotion::of(*plan.system, plan.geometry, g);
   }
 
   Eigen::MatrixXd inertia() const {

@@ -163,9 +163,10 @@ MotionValues RecordedMotion::values_from(const double* values, size_t stride) co
   return out;
 }
 
-MotionValues RecordedMotion::at(const Vector& g, const Vector& xi) const {
+MotionValues RecordedMotion::at(const Vector& g, const Vector& xi, double t) const {
   std::vector<double> in(terms_->program().inputs().size(), 0.0), work(terms_->work_size()),
       out(places_.size());
+  in[0] = t;
   geometry_->coordinates(g.data(), in.data() + 1);
   std::copy_n(xi.data(), n_, in.begin() + 1 + geometry_->columns());
   (*terms_)(in.data(), out.data(), work.data());
@@ -197,8 +198,8 @@ std::vector<MotionValues> RecordedMotion::along(const Vector& g, const Vector& x
   return slopes;
 }
 
-Eigen::VectorXd RecordedMotion::acceleration(const Vector& g, const Vector& xi) const {
-  const MotionValues terms = at(g, xi);
+Eigen::VectorXd RecordedMotion::acceleration(const Vector& g, const Vector& xi, double t) const {
+  const MotionValues terms = at(g, xi, t);
   Vector right(n_ + k_);
   right << terms.change, terms.row_rates;
   return Vector(saddle(terms).partialPivLu().solve(right)).head(n_);

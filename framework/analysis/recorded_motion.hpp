@@ -37,12 +37,12 @@ class RecordedMotion {
       const std::shared_ptr<const RecordedMotion>& known = nullptr);
 
   int inputs() const { return inputs_; }
-  MotionValues at(const Vector& g, const Vector& xi) const;
+  MotionValues at(const Vector& g, const Vector& xi, double t = 0) const;
   /// Derivatives along each column (delta, nu, u): g exp(e delta), xi + e nu, inputs e u, which are
   /// 0 at the state. Of 2n rows, or more.
   std::vector<MotionValues> along(const Vector& g, const Vector& xi,
                                   const Matrix& directions) const;
-  Vector acceleration(const Vector& g, const Vector& xi) const;
+  Vector acceleration(const Vector& g, const Vector& xi, double t = 0) const;
   /// Derivatives of the acceleration, column by column, by those of the terms there.
   Matrix acceleration_slopes(const Vector& g, const Vector& xi,
                              const std::vector<MotionValues>& terms) const;

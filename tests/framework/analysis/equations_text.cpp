@@ -27,9 +27,7 @@ using testing::HasSubstr;
 
 // Systems without recorded formulas, and why.
 const std::map<std::string, std::string> kRefused = {
-    {"n_trailer", "its formulas are a type in C++"},
     {"roller_racer", "its formulas are a type in C++"},
-    {"snakeboard", "its formulas are a type in C++"},
 };
 
 std::string example(const std::string& name) {
