@@ -33,6 +33,8 @@ const series = [{ name: 'a', x: [0, 1, 2], y: [0, 1, 0] }];
 const plot = { kind: 'plot', title: 'A plot', x: 'x', y: 'y', series };
 const tinyPath = { kind: 'path', title: 'A turn in place', x: 'x [m]', y: 'y [m]', series: [{ name: 'a', x: [0, 3e-18, -8.7e-18, 1.5e-17], y: [0, 1.2e-17, -3.6e-17, -1.2e-17] }] };
 const unmarked = { ...errorMap, marks: undefined };
+const strikes = { ...plot, marks: [0.2, 0.9, 1.3, 1.31, 1.34, 1.37, 1.375, 1.38, 1.9].map((at, i) => ({ x: at, text: `corner ${i % 4}.strikes` })) };
+const modes = { kind: 'heatmap', title: 'Modes', x: 't [s]', y: 'contact', x_values: [0, 1, 2], y_values: ['left', 'right'], classes: ['open', 'rolls', 'slides'], values: [[0, 0, 0], [0, 0, 0]] };
 
 /** A page with one more script at its end. */
 const planted = (html, script) => {
@@ -59,6 +61,7 @@ const spin = { kind: 'animation', title: 'Spin', view: '3d', times: [0, 8], floo
   poses: [[0, 0, 1, 1, 0, 0, 0], [0, 0, 1, Math.SQRT1_2, 0, 0, Math.SQRT1_2]], shapes: [{ shape: 'cylinder', radius: 1, length: 0.2, color: 'accent' }] }] };
 /** The table with a first column of names that a filter takes for several words: n = 0, n = 1, … */
 const spaced = (table) => ({ ...table, rows: table.rows.map(([, ...rest], i) => [`n = ${i % 7}`, ...rest]) });
+const landing = { ...spin, forces: [{ name: 'ground', modes: [0, 1], values: [[0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 9]] }] };
 const shaped = (shape) => ({ ...spin, bodies: [{ ...spin.bodies[0], shapes: [shape] }] });
 
 /** name, page, exit status, what the message must say. */
@@ -96,6 +99,10 @@ const cases = [
   ['a dead arrow key', () => bent(errorMap, 'charts/keys.js', 'ArrowDown: columns', 'ArrowDown: 0'), 1, /heat map .*(darker|read out)/],
   ['filters that hide nothing', () => bent(convergence, 'charts/filters.js', '|| tag(tags, name) === select.value', '|| true'), 1, /the first value is chosen at the start: 40 series, not 4/],
   ['fits left out', () => bent(convergence, 'charts/series.js', 's.fit.text || ', ''), 1, /a fit is in the legend/],
+  ['moments that crowd', small(strikes), 0, /passed, 0 failed/],
+  ['words at every moment', () => bent(strikes, 'charts/markings.js', 'const APART = 14', 'const APART = 0'), 1, /no words of a figure overlap at 1280 px/],
+  ['contacts that never close', small(modes), 0, /passed, 0 failed/],
+  ['contacts of all modes', small({ ...modes, values: [[0, 1, 1], [0, 2, 0]] }), 0, /passed, 0 failed/],
   ['names of several words', small(spaced(longTable(50, 8))), 0, /passed, 0 failed/],
   ['words that are not looked for', () => bent(longTable(50, 8), 'blocks/table_filter.js', 'text(entry).includes(word)', 'true'), 1, /the words filter the rows/],
   ['a dead drop-down', () => bent(longTable(50, 8), 'blocks/table_filter.js', "=== list[select.value]", '!== undefined'), 1, /a drop-down filters the rows/],
@@ -112,6 +119,8 @@ const cases = [
   ['too few poses', small({ ...spin, times: [0, 1, 2] }), 1, /has 2 poses for 3 times/],
   ['times that stand', small({ ...spin, times: [1, 1] }), 1, /"times" do not rise/],
   ['a clock that stands', () => bent(spin, 'stage/animation.js', '* speed.value)', '* 0)'), 1, /: plays/],
+  ['a force that comes later', small(landing), 0, /passed, 0 failed/],
+  ['arrows that do not come', () => bent(landing, 'stage/animation.js', 'pushing() ? arrowOf(', 'false ? arrowOf('), 1, /: arrows appear: 0 differences/],
   ['no pause', () => bent(body(), 'stage/animation.js', "const pause = () => {\n    playing = false;", 'const pause = () => {'), 1, /: pauses/],
   ['a dead bar', () => bent(spin, 'stage/animation.js', 'seek(start + (bar.value / TICKS) * (end - start));', ''), 1, /: scrubs to the end/],
   ['bodies that stand', () => bent(spin, 'stage/animation.js', 'stand(body, at[b])', 'stand(body, motion.bodies[b].poses[0])'), 1, /: the body has moved/],

@@ -69,7 +69,7 @@ function drawable() {
   const good = (v, log) => typeof v === 'number' && (!log || v > 0);
   return data.sections.flatMap((section) => section.blocks ?? []).map((block) => {
     if (block.kind === 'sphere') return block.series.some((s) => s.points.filter((p) => p?.every(Number.isFinite)).length > 1);
-    if (block.kind === 'heatmap') return true;  // its scale at least
+    if (block.kind === 'heatmap') return !block.classes || block.values.flat().some((v) => v !== null && block.classes[v] !== 'open');  // a scale has colours; open contacts are grey
     if (block.kind === 'scatter') return block.columns.filter(({ values }) => values.filter(Number.isFinite).length > 1).length > 1;
     if (block.kind === 'animation') {
       return block.bodies.some(({ poses, shapes }) => poses[0]?.every(Number.isFinite) &&

@@ -2,11 +2,14 @@
 
 import { differences } from './pixels.mjs';
 
-/** Of each animation, in the page: has it forces to show? */
-function withForces() {
+/** Of each animation, in the page: where on its bar, from 0 to 1, its forces are strongest; null where it has none to show. */
+function strongestAt() {
   const { sections } = JSON.parse(document.getElementById('hamel-data').textContent);
-  return sections.flatMap((section) => section.blocks ?? []).filter(({ kind }) => kind === 'animation')
-    .map(({ forces = [] }) => forces.some(({ values }) => values.some((v) => v && v.slice(3).some((force) => force !== 0))));
+  return sections.flatMap((section) => section.blocks ?? []).filter(({ kind }) => kind === 'animation').map(({ times, forces = [] }) => {
+    const sizes = times.map((_, i) => Math.max(0, ...forces.map(({ values }) => Math.hypot(...(values[i]?.slice(3) ?? [])))));
+    const most = Math.max(...sizes);
+    return most > 0 ? (times[sizes.indexOf(most)] - times[0]) / (times.at(-1) - times[0]) : null;
+  });
 }
 
 /** A tenth of the speed, so that a busy machine does not come to the end before it is told to pause. */
@@ -18,7 +21,7 @@ async function slowDown(speed) {
 
 export async function useAnimation(page, check) {
   const figures = page.locator('.figure.animation');
-  const pushed = await figures.count() ? await page.evaluate(withForces) : [];
+  const pushed = await figures.count() ? await page.evaluate(strongestAt) : [];
   for (let n = 0; n < await figures.count(); ++n) {
     const figure = figures.nth(n);
     const title = await figure.locator('.title').textContent();
@@ -51,13 +54,17 @@ export async function useAnimation(page, check) {
     await page.keyboard.press('Home');
     check(`${title}: and back to the start`, await differences(page, stands, await look()) < 200);
     const push = figure.getByText('reactions', { exact: true });
-    check(`${title}: reactions are there to switch on where the data has forces`, await push.count() === (pushed[n] ? 1 : 0));
+    check(`${title}: reactions are there to switch on where the data has forces`, await push.count() === (pushed[n] === null ? 0 : 1));
     if (await push.count()) {
+      await bar.fill(String(Math.round(1000 * pushed[n])));
+      const without = await look();
       await push.click();
-      const seen = await differences(page, stands, await look());
+      const seen = await differences(page, without, await look());
       check(`${title}: arrows appear`, seen > 60, `${seen} differences`);
       await push.click();
-      check(`${title}: and go`, await differences(page, stands, await look()) < 60);
+      check(`${title}: and go`, await differences(page, without, await look()) < 60);
+      await bar.focus();
+      await page.keyboard.press('Home');
     }
     await stage.focus();
     await page.keyboard.press('ArrowLeft');

@@ -29,7 +29,7 @@ export async function useHeatmap(page, check) {
       await page.keyboard.press('ArrowLeft');  // (at the first cell it stays; elsewhere it goes there and back)
       if (c + row > 0) await page.keyboard.press('ArrowRight');
       return map.evaluate((holder, number) => {
-        const cells = [...holder.querySelectorAll('svg path')].filter((path) => /^(rgb|url|var\(--(paper|c\d))/.test(path.getAttribute('fill') ?? ''));
+        const cells = [...holder.querySelectorAll('svg path')].filter((path) => /^(rgb|url|var\(--(paper|mesh|c\d))/.test(path.getAttribute('fill') ?? ''));
         const fill = cells[number]?.getAttribute('fill') ?? '';
         return { fill, light: (fill.match(/\d+/g) ?? []).reduce((sum, v) => sum + Number(v), 0), tip: holder.parentElement.querySelector('[role=status]').textContent };
       }, row * values[0].length + c);
@@ -59,7 +59,7 @@ async function lookAtClasses(page, check, n, title, classes, known, look) {
     fills.push(fill);
     check(`heat map ${title}: the class ${name} is read out`, tip.includes(name), tip);
   }
-  check(`heat map ${title}: a colour for each class`, new Set(fills).size === seen.length && fills.every((fill) => /^var\(--c/.test(fill)), String(fills));
+  check(`heat map ${title}: a colour for each class`, new Set(fills).size === seen.length && fills.every((fill) => /^var\(--(c\d|mesh)/.test(fill)), String(fills));
   const figure = page.locator('.figure.heatmap').nth(n);
   const [legend, inside] = [await figure.locator('.legend').textContent(), await figure.locator('svg text').allTextContents()];
   check(`heat map ${title}: the legend has all names`, classes.every((name) => legend.includes(name)), legend);

@@ -9,13 +9,14 @@ const NEAR = 3;                // decades over the floor is still round-off
 export const DECADES = 2;      // so many on a logarithmic axis y: it ends at powers of ten
 const LABEL = [0.22, 0.1];     // parts of the axes that the words at a line take
 const WIDE = 0.45;             // of the place of a triangle: behind it are its words
+const APART = 14;              // pixels from a moment to the next whose words stand beside its own
 
 const line = (at, text, style = {}, position = 'insideEndTop') => ({ ...at, symbol: 'none', lineStyle: { color: 'var(--soft)', type: [5, 4], width: 1, ...style },
   label: { ...TEXT, fontSize: 11, backgroundColor: 'var(--paper)', formatter: text, position, show: Boolean(text) } });
 
-/** The block -> {series, range: of the y axis, where it is fixed, least: what it reaches down to}. */
-export function markings(block, shown, data) {
-  const lines = (block.marks ?? []).map(({ x, text }) => line({ xAxis: x }, text));
+/** The block -> {series, range: of the y axis, where it is fixed, least: what it reaches down to}; seen: the range of x, wide: its pixels. */
+export function markings(block, shown, data, seen, wide) {
+  const lines = moments(block.marks ?? [], seen, wide).map(({ x, words }) => line({ xAxis: x }, words));
   let range = null;
   if (block.floor > 0 && data.y.log) {
     const floor = Math.log10(block.floor);
@@ -35,6 +36,23 @@ export function markings(block, shown, data) {
   const series = lines.length ? [{ id: 'marks', name: '', type: 'line', data: [], silent: true, tooltip: { show: false }, markLine: { silent: true, symbol: 'none', z: 6, data: lines } }] : [];
   const slopes = triangles(block.slopes, shown, data);
   return { series: [...areas, ...series, ...slopes.series], range, least: slopes.least };
+}
+
+/** Marks in the order of x with the words at their lines: those of moments too near for words of their own are counted in the words before. */
+export function moments(marks, [from, to], wide) {
+  const apart = (APART * (to - from)) / wide;
+  const out = [];
+  let first = null;
+  for (const { x, text } of [...marks].sort((a, b) => a.x - b.x).filter((mark) => mark.x >= from && mark.x <= to)) {
+    if (first && x - first.x < apart) {
+      ++first.more;
+      out.push({ x, words: '' });
+    } else {
+      first = { x, text, more: 0 };
+      out.push(first);
+    }
+  }
+  return out.map(({ x, text, more, words }) => ({ x, words: words ?? `${text}${more ? `, ${more} more` : ''}` }));
 }
 
 /** Where words at a level stand clear of the curves: above or below it, at the right or the left end; for nowhere below at the right. */

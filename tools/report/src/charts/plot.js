@@ -107,11 +107,12 @@ function describe(block, { curves, y }, equal) {
 /** seen: the part of each axis that is zoomed to. */
 function option(block, data, equal, width, height, seen) {
   const shown = data.curves.map((curve, i) => ({ ...curve, id: String(i) })).filter((curve) => curve.show && curve.points.length > 0);
-  const marked = equal ? null : markings(block, shown, data);
   const margin = { ...MARGIN };
+  const across = equal ? null : rangeOf(shown, 0, data.x);
+  const marked = equal ? null : markings(block, shown, data, seen.x ?? across, width - margin.left - margin.right);
   const yTicks = (range) => ticksOf(data.y, seen.y ?? range, height / 50);
   const widthOf = (ticks) => Math.ceil(widest(ticks.at.map(ticks.read)));
-  let ranges = equal ? null : { x: rangeOf(shown, 0, data.x), y: downTo(marked.least, marked.range ?? rangeOf(shown, 1, data.y)) };
+  let ranges = equal ? null : { x: across, y: downTo(marked.least, marked.range ?? rangeOf(shown, 1, data.y)) };
   // Equal scales need the margin beforehand: that of their labels where those are wide, as of tiny numbers.
   if (equal) margin.left = Math.max(MARGIN.left, widthOf(yTicks(equalRanges(shown, width, height, margin).y)) + BESIDE);
   if (equal) ranges = equalRanges(shown, width, height, margin);
