@@ -2,6 +2,7 @@
 
 import { luminance, sequential } from '../src/charts/colours.js';
 import { logTicks, niceTicks, prose } from '../src/format.js';
+import { spreadNames } from '../src/stage/labels.js';
 import { floorGrid, middleOf, placed, placeInTime, poseAt, readMotion, slerp, turnFromZ, turned } from '../src/stage/motion.js';
 import { columnsToCsv } from '../src/save.js';
 import { covered, readSeries } from '../src/charts/series.js';
@@ -35,6 +36,11 @@ const verdicts = (...all) => [{ blocks: all.map((status) => ({ kind: 'verdict', 
 const state = (...all) => stateOf(verdicts(...all))?.text;
 const ran = (status) => ({ blocks: [{ kind: 'record', record: { status } }] });
 
+// Names that come near one another at all heights: round-off must not move one for ever.
+const crowds = Array.from({ length: 20000 }, (_, i) => Array.from({ length: 4 }, (__, k) => ({ across: (i * 7.31 + k * 11.7) % 60, down: (i * 0.377 + k * 5.11) % 200 + 1 / 3, half: 20 })));
+const apart = (names) => spreadNames(names).every((down, i, all) => down === null || all.every((other, k) => k === i || other === null ||
+  Math.abs(other - down) > 12.9 || Math.abs(names[i].across - names[k].across) >= 43));
+
 export const units = [
   ['the colour scale gets darker throughout', lights.every((light, i) => i === 0 || light < lights[i - 1])],
   ['a quarter turn about z takes x to y', near(turned(quarter, X), [0, 1, 0])],
@@ -51,6 +57,7 @@ export const units = [
   ['bodies are followed about their middles, not their frames', near(middleOf(aside.bodies, [poseAt(aside.bodies[0], placeInTime([0], 0))]), [4, 0, 0]) && aside.reach < 1.01],
   ['paths that cover each other up to round-off', pathsOver(1e-15) === 1 && pathsOver(0.1) === 0],
   ['the room that a motion takes', near(motion.box[0], [-1, -1, -1]) && near(motion.box[1], [3, 1, 1])],
+  ['names do not cover one another', crowds.every(apart) && crowds.some((names) => spreadNames(names).includes(null))],
   ['the floor reaches under all of it', Math.max(...grid.lines.flat().map((p) => p[0])) >= 10 && grid.lines.length < 40],
   ['curves that cover each other are found', over([0, 1, 0, 1], [0, 1.001, 0, 1]) === 1 && over([0, 1, 0, 1], [0, 1, 0, 0.9]) === 0],
   ['one way to write numbers', prose('at most **1.8e-13**, 0.0e+00, rtol = 1e-08, 2e+05 of 981e-4ab, x1e-3') === 'at most **1.8·10⁻¹³**, 0, rtol = 10⁻⁸, 2·10⁵ of 981e-4ab, x1e-3'],

@@ -9,6 +9,7 @@ import { remark } from '../figure.js';
 import { onPaper, onPaperFor } from '../print.js';
 import { SHARPER } from '../save.js';
 import { FONT, followWidth, widthOf } from '../width.js';
+import { spreadNames } from './labels.js';
 
 export const HOME = [0.76, -0.52, 0.42];  // from where the eye looks, at first
 export const ABOVE = [0, -1e-5, 1];       // x to the right, y up
@@ -17,8 +18,6 @@ const LOWEST = 0.03;   // radians over a floor
 const TURN = 0.12;     // radians by an arrow key
 const SCREEN = Math.max(2, devicePixelRatio);  // pixels per CSS pixel: print is sharp too
 const MOST_SOLID = 8;  // browsers allow some 16 WebGL contexts on a page
-const TALL = 13;       // pixels of a name; one that would cover another moves up, and is left out where it would move far
-const MOST_MOVES = 1.5;
 const ROW = 18;        // pixels of a name below a saved picture
 // (In the elements, not in the style sheet: they go with a saved picture.)
 const AXES = 'stroke: var(--soft); stroke-width: 1.4; font: 12px/1 system-ui, sans-serif';
@@ -266,17 +265,11 @@ export class Stage {
       if (Math.hypot(axis.x, axis.y) < 0.15) return [];  // it points at the eye
       return [h('line', { x1: x, y1: y, x2: x + 19 * axis.x, y2: y - 19 * axis.y }), text(name, x + 27 * axis.x, y - 27 * axis.y)];
     });
-    const taken = [];
-    const labels = this.shown.labels.flatMap(({ text: words, at, up = 0 }) => {
+    const names = this.shown.labels.map(({ text: words, at, up = 0 }) => {
       const place = new Vector3(...at()).project(this.camera);
-      const [across, first, half] = [(1 + place.x) * width / 2, (1 - place.y) * height / 2 - up, widthOf(words) / 2];
-      let down = first;
-      const covered = () => taken.find((other) => Math.abs(other.across - across) < other.half + half + 3 && Math.abs(other.down - down) < TALL);
-      for (let other = covered(); other; other = covered()) down = other.down - TALL;
-      if (first - down > MOST_MOVES * TALL) return [];
-      taken.push({ across, down, half });
-      return [text(words, across, down)];
+      return { words, across: (1 + place.x) * width / 2, down: (1 - place.y) * height / 2 - up, half: widthOf(words) / 2 };
     });
+    const labels = spreadNames(names).flatMap((down, i) => (down === null ? [] : [text(names[i].words, names[i].across, down)]));
     this.overlay.replaceChildren(...axes, ...labels, this.shown.scale ? h('text', { x: 70, y: height - 12, style: `${WORDS}; text-anchor: start` }, this.shown.scale) : '');
   }
 
