@@ -34,7 +34,7 @@ namespace {
 constexpr int kLeastSize = 64, kMostSize = 4096, kMostStrobe = 100, kMostFrames = 20000;
 constexpr size_t kFramesAtOnce = 48;  // of one start of the browser
 constexpr double kCssWidth = 800;     // larger files are sharper, with larger words
-constexpr double kShortest = 4, kLongest = 25, kGood = 10;  // s, of a film
+constexpr double kShortestFilm = 4, kLongestFilm = 25, kGoodFilm = 10;  // s, of a film
 
 struct Size {
   int width, height;
@@ -100,7 +100,7 @@ std::vector<std::string> frames_of(const Page& page, const PictureOptions& optio
 
 // Real time where the film then takes a pleasant time, else what makes it last ten seconds.
 double speed_of(double duration) {
-  return duration >= kShortest && duration <= kLongest ? 1 : duration / kGood;
+  return duration >= kShortestFilm && duration <= kLongestFilm ? 1 : duration / kGoodFilm;
 }
 
 void write_film(const Page& page, const std::vector<double>& times, PictureOptions picture,
