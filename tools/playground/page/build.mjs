@@ -71,8 +71,8 @@ const COMPILED = `(async (answer) => {
   const again = (await answer).clone();  // for a server that gives the file another type
   return WebAssembly.compileStreaming(answer).catch(async () => WebAssembly.compile(await again.arrayBuffer()));
 })`;
-const source = (make, wasm, motion) => `(() => {
-  const make = () => ${make};
+const source = (make, wasm, motion, first = '') => `(() => {
+${first}  const make = () => ${make};
   let first = make();
   const worker = () => {
     const one = first ?? make();
@@ -82,8 +82,10 @@ const source = (make, wasm, motion) => `(() => {
   globalThis.hamelSource = { worker, compiled: ${COMPILED}(${wasm}), stored: async (name) => ${motion} };
 })();
 `;
+// A browser gives a page from disk no files: there the one file takes over.
 writeFileSync(join(output, 'source.js'), source("new Worker('worker.js')", "fetch('hamel.wasm')",
-  "fetch(`motions/${encodeURIComponent(name)}.json`).then((answer) => (answer.ok ? answer.json() : null))"));
+  "fetch(`motions/${encodeURIComponent(name)}.json`).then((answer) => (answer.ok ? answer.json() : null))",
+  "  if (location.protocol === 'file:') return location.replace(`playground.html${location.hash}`);\n"));
 const first = parts.metafile.outputs[Object.keys(parts.metafile.outputs).find((path) => path.endsWith('playground.js'))];
 const preloads = first.imports.filter(({ kind }) => kind === 'import-statement').map(({ path }) => `<link rel="modulepreload" href="${basename(path)}">`);
 writeFileSync(join(output, 'index.html'), fill(template, {

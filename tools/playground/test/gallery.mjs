@@ -1,29 +1,33 @@
-// node gallery.mjs BUILD: every link from the gallery of the documentation site to the playground runs in the module, to its end. Exit
-// status: 0 passed, 1 failed, 77 where the module or the site is not built.
+// node gallery.mjs BUILD: every link from the documentation site to the playground runs in the module, to its end, and every entry of the
+// gallery and every file of the tutorial has one. Exit status: 0 passed, 1 failed, 77 where the module or the site is not built.
 
-import { existsSync, readFileSync } from 'node:fs';
+import { existsSync, readdirSync, readFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { fileOf, stateOfFragment } from '../page/src/state.js';
 import { openModule } from './module.mjs';
 
 const build = resolve(process.argv[2] ?? 'build');
-const page = join(build, 'docs/html/gallery.html');
-for (const file of [page, join(build, 'playground/wasm/tools/playground/hamel.wasm')]) {
+const site = join(build, 'docs/html');
+for (const file of [join(site, 'gallery.html'), join(build, 'playground/wasm/tools/playground/hamel.wasm')]) {
   if (!existsSync(file)) {
     console.log(`skipped: no ${file}`);
     process.exit(77);
   }
 }
-const html = readFileSync(page, 'utf8');
-const links = [...html.matchAll(/href="playground\/index\.html(#[^"]*)"/g)].map(([, fragment]) => fragment);
-const entries = [...html.matchAll(/class="tiles">(.*?)<\/div>/gs)].flatMap(([, tiles]) => [...tiles.matchAll(/<a /g)]).length;
+const pages = readdirSync(site, { recursive: true }).filter((name) => name.endsWith('.html') && !name.startsWith('playground'));
+const linksOf = (name) => [...readFileSync(join(site, name), 'utf8').matchAll(/href="(?:\.\.\/)*playground\/index\.html(#[^"]*)"/g)].map(([, fragment]) => fragment);
+const matches = (name, pattern) => [...readFileSync(join(site, name), 'utf8').matchAll(pattern)];
+const links = [...new Set(pages.flatMap(linksOf))];
 const library = await openModule(build);
 let failed = 0;
 function fail(what) {
   ++failed;
   console.log(`FAILED: ${what}`);
 }
-if (links.length === 0 || links.length !== entries) fail(`${links.length} links of ${entries} entries`);
+const entries = matches('gallery.html', /class="tiles">(.*?)<\/div>/gs).flatMap(([, tiles]) => [...tiles.matchAll(/<a /g)]).length;
+const files = matches('tutorial/ten_minutes.html', /\.toml<\/span>/g).length;
+for (const [name, count] of [['gallery.html', entries], ['tutorial/ten_minutes.html', files]])
+  if (count === 0 || linksOf(name).filter((link) => link.startsWith('#~')).length !== count) fail(`${name}: ${linksOf(name).length} links of ${count} files and systems`);
 for (const link of links) {
   const state = await stateOfFragment(link);
   state.text ??= library.call('text', { name: state.system }).text;

@@ -83,6 +83,13 @@ export class Controls {
     for (const name of CHOICES) this.rows.get(`options ${name}`)?.show(state.options[name]);
   }
 
+  /** Nothing to move. */
+  clear() {
+    this.rows.clear();
+    this.key = '';
+    this.holder.replaceChildren();
+  }
+
   #build(system, state) {
     this.rows.clear();
     const add = (key, row) => {

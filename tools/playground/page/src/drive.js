@@ -1,4 +1,4 @@
-// A run that is driven while it is watched: keys, buttons and fingers hold its inputs.
+// A run that is driven while it is watched: keys, buttons, fingers and the sticks of a gamepad hold its inputs, and their sliders move them.
 
 import { h } from '../../../report/src/dom.js';
 import { posesOf } from './motion.js';
@@ -24,6 +24,16 @@ export function keysOf(inputs) {
   }
   return names.slice(0, 4).flatMap((name, i) => [['q', -1], ['w', 1], ['a', -1], ['s', 1], ['z', -1], ['x', 1], ['o', -1], ['p', 1]].slice(2 * i, 2 * i + 2)
     .map(([key, sign]) => ({ key, label: key, says: `${name} ${sign > 0 ? '+' : '−'}`, push: { [name]: sign } })));
+}
+
+const IDLE = 0.12;  // of a stick's way: it rests
+
+/** What the sticks of a gamepad do, axes from -1 to 1 to the right and down, as the keys do -> {input: part of its strength}. */
+export function sticksOf(inputs, axes) {
+  const names = inputs.map(({ name }) => name);
+  const [x = 0, y = 0, ...rest] = axes.map((way) => (Math.abs(way) < IDLE ? 0 : way));
+  if (inputs.length === 2 && inputs[0].unit === inputs[1].unit) return { [names[0]]: -y + x / 2, [names[1]]: -y - x / 2 };
+  return Object.fromEntries(names.slice(0, 4).map((name, i) => [name, [x, -y, rest[0] ?? 0, -(rest[1] ?? 0)][i]]));
 }
 
 /** The bodies where they start, without trails, and with room on the floor to drive: poses in the corners of a large square. */
@@ -88,12 +98,17 @@ export class Drive {
     const now = { ...this.base };
     for (const key of this.keys.filter((one) => this.held.has(one.key)))
       for (const [name, part] of Object.entries(key.push)) now[name] += part * this.strength;
+    for (const pad of navigator.getGamepads?.() ?? [])
+      for (const [name, part] of Object.entries(pad ? sticksOf(this.system.inputs, pad.axes) : {})) now[name] += part * this.strength;
     for (const { name, range: { least, most } } of this.system.inputs)
       now[name] = Math.max(least ?? -Infinity, Math.min(most ?? Infinity, now[name]));
     return now;
   }
 
-  #hold(key, yes) {
+  /** What an input is while nothing is held. */
+  hold(name, value) { this.base[name] = value; }
+
+  #press(key, yes) {
     if (yes) this.held.add(key); else this.held.delete(key);
     this.buttons.get(key)?.setAttribute('aria-pressed', String(yes));
   }
@@ -105,7 +120,7 @@ export class Drive {
     if (event.target.closest?.('.cm-editor, input, select')) return;
     event.preventDefault();
     event.stopPropagation();
-    this.#hold(key, yes);
+    this.#press(key, yes);
   }
 
   #panel() {
@@ -113,15 +128,15 @@ export class Drive {
       const button = h('button', { type: 'button', class: 'hold', 'aria-pressed': 'false', title: says, 'aria-label': says }, h('b', {}, label), ` ${says}`);
       button.addEventListener('pointerdown', (event) => {
         button.setPointerCapture(event.pointerId);
-        this.#hold(key, true);
+        this.#press(key, true);
       });
-      for (const end of ['pointerup', 'pointercancel']) button.addEventListener(end, () => this.#hold(key, false));
+      for (const end of ['pointerup', 'pointercancel']) button.addEventListener(end, () => this.#press(key, false));
       return [key, button];
     }));
     const unit = this.system.inputs[0].unit;
     const strength = h('input', { type: 'number', step: 'any', min: 0, value: String(this.strength), class: 'exact', 'aria-label': 'strength of a held key',
       oninput: () => { if (Number(strength.value) >= 0) this.strength = Number(strength.value); } });
-    return h('div', { class: 'drive', role: 'group', 'aria-label': 'drive' }, h('span', {}, 'Hold a key or a button:'), [...this.buttons.values()],
+    return h('div', { class: 'drive', role: 'group', 'aria-label': 'drive' }, h('span', {}, 'Hold a key or a button, or move a stick:'), [...this.buttons.values()],
       h('label', {}, 'strength ', strength, unit && unit !== '1' ? ` ${unit}` : ''), h('button', { type: 'button', class: 'stop', onclick: () => this.stop() }, 'end (Esc)'));
   }
 }

@@ -11,7 +11,8 @@ import { Drive } from './drive.js';
 import { Library } from './library.js';
 import { mistakesOf } from './mistakes.js';
 import { alike, motionOf } from './motion.js';
-import { commandOf, fileOf, fragmentOf, stateOf, stateOfFragment } from './state.js';
+import { commandOf, fileOf, fragmentOf, kindOf, liveState, pythonOf, stateOf, stateOfFragment } from './state.js';
+import { addTerminal, carryOutText } from './terminal.js';
 
 const FIRST = 'bicycle';
 const [TYPED, CALM, SLOW] = [250, 350, 400];  // milliseconds: until a text is run, until figures are drawn, until a run is said to take long
@@ -39,31 +40,60 @@ function run() {
   if (!page.running) work();
 }
 
+/** Waits for the library; where that takes long, the page says so. */
+async function wait(promise) {
+  const slow = setTimeout(() => { document.body.dataset.slow = 'true'; }, SLOW);
+  try {
+    return await promise;
+  } finally {
+    clearTimeout(slow);
+    delete document.body.dataset.slow;
+  }
+}
+
 async function work() {
   page.running = true;
   while (page.wanted) {
     const state = page.wanted;
     page.wanted = null;
-    const slow = setTimeout(() => { document.body.dataset.slow = 'true'; }, SLOW);
     const { text, options, parameters, inputs } = state;
-    const { answer, numbers } = await library.call('run', { text, origin: fileOf(state), options, parameters, inputs })
+    const isRun = kindOf(text) === 'run';
+    const { answer, numbers } = await wait(isRun ? library.call('run', { text, origin: fileOf(state), options, parameters, inputs }) : carryOutText(library, state).then((answer) => ({ answer })))
       .catch((error) => ({ answer: { ok: false, mistakes: [error.message] } }));
-    clearTimeout(slow);
-    delete document.body.dataset.slow;
-    if (!page.wanted || answer.ok) show(answer, numbers, state);
+    if (!page.wanted || answer.ok) (isRun ? show : showOther)(answer, numbers, state);
   }
   page.running = false;
 }
 
-function show(answer, numbers, state) {
-  if (answer.ended) return;
-  const mistakes = answer.ok ? [] : mistakesOf(answer.mistakes, fileOf(state));
-  document.body.classList.toggle('mistaken', !answer.ok);
+/** What is wrong with the text, and where. */
+function tellMistakes(messages, state) {
+  const mistakes = mistakesOf(messages, fileOf(state));
+  document.body.classList.toggle('mistaken', mistakes.length > 0);
   $('mistakes').replaceChildren(...mistakes.map(({ line, column, text }) => h('li', {}, line ? h('button', { type: 'button', onclick: () => page.editor?.focus(line) },
     `line ${line}${column ? `, column ${column}` : ''}`) : null, line ? ' ' : null, text)));
   page.mistakes = mistakes;
   page.editor?.mark(mistakes);
   clearTimeout(page.calm);
+}
+
+/** The page of a study, an ensemble or a plan. */
+async function showOther(answer, _, state) {
+  if (answer.ended) return;
+  tellMistakes(answer.mistakes, state);
+  if (answer.mistakes.length) return done();
+  page.shown?.figure.dispose();
+  page.shown = null;
+  page.controls?.clear();
+  $('motion').replaceChildren(h('p', { class: 'remark' }, 'Its page is below.'));
+  for (const id of ['verdict', 'facts', 'notes']) $(id).replaceChildren();
+  $('drive').hidden = true;
+  await drawSections(answer.sections);
+  done();
+}
+
+function show(answer, numbers, state) {
+  if (answer.ended) return;
+  tellMistakes(answer.ok ? [] : answer.mistakes, state);
   if (!answer.ok) return done();
   showMotion(motionOf(answer.motion, numbers));
   const { status, text } = answer.verdict;
@@ -73,6 +103,7 @@ function show(answer, numbers, state) {
   $('notes').replaceChildren(...answer.notes.map((note) => h('p', { class: 'remark' }, inline(note))));
   page.system = { ...answer.system, options: answer.options };
   page.controls?.show(page.system, page.state);
+  page.offer?.();
   $('drive').hidden = answer.system.inputs.length === 0 || !page.shown;
   page.calm = setTimeout(() => drawFigures(), CALM);
   done();
@@ -117,10 +148,13 @@ async function showStored(name) {
 /** Charts: their code comes when the first motion is there. */
 async function drawFigures() {
   const { answer } = await library.call('figures');
-  if (!answer.ok || page.running) return;
+  if (answer.ok && !page.running) await drawSections(answer.sections);
+}
+
+async function drawSections(sections) {
   const { draw } = await import('./figures.js');
   page.figures?.();
-  page.figures = draw($('figures'), answer.sections);
+  page.figures = draw($('figures'), sections);
 }
 
 // ---- what changes the state ---------------------------------------------------------------------------------------------
@@ -129,8 +163,14 @@ async function changed({ quickly = true } = {}) {
   if (page.drive) page.drive.stop();
   clearTimeout(page.timer);
   page.timer = setTimeout(run, quickly ? 0 : TYPED);
+  await tell();
+}
+
+/** The state as a command, in the list and in the address. */
+async function tell() {
   $('command').textContent = commandOf(page.state, registered());
   $('system').value = page.state.text === registered() ? page.state.system : '';
+  page.offer?.();
   history.replaceState(null, '', await fragmentOf(page.state, registered()));
 }
 
@@ -142,19 +182,16 @@ function typed(text) {
 function moved(part, name, value) {
   const { [name]: _, ...rest } = page.state[part];
   page.state = { ...page.state, [part]: value === null ? rest : { ...rest, [name]: value } };
-  changed();
+  if (part !== 'inputs' || !page.drive) return changed();
+  page.drive.hold(name, value ?? 0);  // the run that is driven has it at once
+  page.controls.show(page.system, page.state);
+  tell();
 }
 
 async function choose(name) {
   page.state = stateOf(name, await textOf(name));
   page.editor?.show(page.state.text);
   changed();
-}
-
-/** What `hamel live` put into the page: {system} or {text}; null in other pages. */
-function liveState() {
-  const given = document.getElementById('live')?.textContent;
-  return given ? { system: '', options: {}, parameters: {}, inputs: {}, ...JSON.parse(given) } : null;
 }
 
 /** The state that the address has; that of the first system where it has none. */
@@ -202,17 +239,20 @@ function addButtons() {
   const copy = (text, what) => navigator.clipboard.writeText(text).then(() => say(`${what} copied`), () => say('this browser does not let a page copy'));
   $('share').addEventListener('click', async () => copy(`${location.href.replace(/#.*/, '')}${await fragmentOf(page.state, registered())}`, 'address'));
   $('copy').addEventListener('click', () => copy($('command').textContent, 'command'));
+  $('python').addEventListener('click', () => copy(pythonOf(page.state, registered()), 'Python'));
   $('download').addEventListener('click', () => {
     const link = h('a', { download: fileOf(page.state), href: URL.createObjectURL(new Blob([page.state.text], { type: 'application/toml' })) });
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 1000);
   });
   $('drive').addEventListener('click', () => {
+    const { inputs } = page.state;
     page.drive = new Drive({ library, figure: page.shown.figure, block: page.shown.block, state: page.state, system: page.system, ended: (reason) => {
       page.drive?.element.remove();
       page.drive = null;
       $('drive').disabled = false;
       page.shown?.figure.show(page.shown.block);
+      if (inputs !== page.state.inputs) run();
       say(reason);
       if (reason) $('notes').replaceChildren(h('p', { class: 'remark' }, reason));
     } });
@@ -220,6 +260,8 @@ function addButtons() {
     $('motion').append(page.drive.element);
     page.drive.start();
   });
+  page.offer = addTerminal({ library, about: () => ({ state: page.state, registered: registered(), system: page.system }), draw: drawSections, wait });
+  page.offer();
   $('stop').addEventListener('click', () => {
     library.restart();
     delete document.body.dataset.slow;
@@ -233,6 +275,7 @@ async function begin() {
   $('text').textContent = page.state.text;
   run();
   addButtons();
+  $('guide').hidden = !/\/playground\/(\w+\.html)?$/.test(location.pathname);  // in the site
   document.body.append(h('span', { id: 'light', class: 'light', hidden: true }));
   const { answer } = await library.call('catalogue');
   page.catalogue = answer;
