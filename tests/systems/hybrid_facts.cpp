@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -44,6 +45,19 @@ TEST(Dome, TheBallSlipsBeforeItLeaves) {
   ASSERT_TRUE(r.stopped_by_event);
   const double angle = std::atan2(r.last.coordinates[9], r.last.coordinates[11] + big);
   EXPECT_NEAR(angle, 0.6208051218962687, 1e-9);
+}
+
+// A ball alone has no extent: its ground reaches as far as it may roll.
+TEST(Ground, IsDrawnAroundABall) {
+  Mechanism m = ball_at({0, 0, 0.1}, 0.1, {});
+  m.ground_height("top*cos(x)", {{"top", {0.0}}});
+  const Result r = simulate(m).until(0.01).run();
+  const DrawnBody& ground = r.system->drawing.bodies.front();
+  ASSERT_EQ(ground.name, "ground");
+  double far = 0;
+  for (const BodyShape& line : ground.shapes)
+    for (const Point& at : line.points) far = std::max(far, std::hypot(at[0], at[1]));
+  EXPECT_GT(far, 5);
 }
 
 // On a slope a ball rolls from rest where mu >= k/(1 + k) tan a, with g k'/(1 + k); else it slides.

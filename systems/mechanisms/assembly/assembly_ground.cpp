@@ -1,4 +1,5 @@
 // Assembly: ground with a height.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -47,10 +48,15 @@ void Assembly::check_feet(ConstraintRows rows, Tree tree) {
   }
 }
 
-// Lines along x and y, several times as far as the mechanism is large.
+// Lines along x and y: several times as far as the mechanism is large, and some turns of what
+// rolls.
 void Assembly::draw_ground(const Expression& height) {
   constexpr int lines = 24, points = 96;
-  const double far = 6 * extent_;
+  double far = 6 * extent_;
+  for (const auto& contact : parts_.contacts_)
+    for (const char* const length : {"radius", "semi_axes"})
+      if (const auto of = contact.values.find(length); of != contact.values.end())
+        for (const double x : of->second) far = std::max(far, 60 * x);
   std::vector<BodyShape> out;
   for (const bool along_x : {true, false}) {
     for (int i = 0; i <= lines; ++i) {
@@ -60,7 +66,7 @@ void Assembly::draw_ground(const Expression& height) {
                      x = along_x ? u : v, y = along_x ? v : u, z = height(std::array{x, y});
         if (std::isfinite(z)) line.push_back({x, y, z});
       }
-      if (line.size() > 1) out.push_back(shapes::line(line));
+      if (line.size() > 1) out.push_back(shapes::line(line, {.color = "light"}));
     }
   }
   model_.drawing.bodies.push_back({"ground",
