@@ -33,7 +33,7 @@ const series = [{ name: 'a', x: [0, 1, 2], y: [0, 1, 0] }];
 const plot = { kind: 'plot', title: 'A plot', x: 'x', y: 'y', series };
 const tinyPath = { kind: 'path', title: 'A turn in place', x: 'x [m]', y: 'y [m]', series: [{ name: 'a', x: [0, 3e-18, -8.7e-18, 1.5e-17], y: [0, 1.2e-17, -3.6e-17, -1.2e-17] }] };
 const unmarked = { ...errorMap, marks: undefined };
-const strikes = { ...plot, marks: [0.2, 0.9, 1.3, 1.31, 1.34, 1.37, 1.375, 1.38, 1.9].map((at, i) => ({ x: at, text: `corner ${i % 4}.strikes` })) };
+const strikes = { ...plot, series: [{ name: 'a', x: Array.from({ length: 61 }, (_, i) => i / 30), y: Array.from({ length: 61 }, (_, i) => (i % 7) / 7) }], marks: [0.002, 0.1, 0.2, 0.9, 1.3, 1.31, 1.34, 1.37, 1.375, 1.38, 1.9].map((at, i) => ({ x: at, text: `corner ${i % 4}.strikes` })) };
 const modes = { kind: 'heatmap', title: 'Modes', x: 't [s]', y: 'contact', x_values: [0, 1, 2], y_values: ['left', 'right'], classes: ['open', 'rolls', 'slides'], values: [[0, 0, 0], [0, 0, 0]] };
 
 /** A page with one more script at its end. */
@@ -101,6 +101,7 @@ const cases = [
   ['fits left out', () => bent(convergence, 'charts/series.js', 's.fit.text || ', ''), 1, /a fit is in the legend/],
   ['moments that crowd', small(strikes), 0, /passed, 0 failed/],
   ['words at every moment', () => bent(strikes, 'charts/markings.js', 'const APART = 14', 'const APART = 0'), 1, /no words of a figure overlap at 1280 px/],
+  ['words on the axis', () => bent(strikes, 'charts/markings.js', 'x - from < apart }', 'false }'), 1, /no words of a figure overlap at 390 px/],
   ['contacts that never close', small(modes), 0, /passed, 0 failed/],
   ['contacts of all modes', small({ ...modes, values: [[0, 1, 1], [0, 2, 0]] }), 0, /passed, 0 failed/],
   ['names of several words', small(spaced(longTable(50, 8))), 0, /passed, 0 failed/],

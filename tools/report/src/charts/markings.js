@@ -16,7 +16,7 @@ const line = (at, text, style = {}, position = 'insideEndTop') => ({ ...at, symb
 
 /** The block -> {series, range: of the y axis, where it is fixed, least: what it reaches down to}; seen: the range of x, wide: its pixels. */
 export function markings(block, shown, data, seen, wide) {
-  const lines = moments(block.marks ?? [], seen, wide).map(({ x, words }) => line({ xAxis: x }, words));
+  const lines = moments(block.marks ?? [], seen, wide).map(({ x, words, behind }) => line({ xAxis: x }, words, {}, behind ? 'insideEndBottom' : 'insideEndTop'));
   let range = null;
   if (block.floor > 0 && data.y.log) {
     const floor = Math.log10(block.floor);
@@ -38,21 +38,24 @@ export function markings(block, shown, data, seen, wide) {
   return { series: [...areas, ...series, ...slopes.series], range, least: slopes.least };
 }
 
-/** Marks in the order of x with the words at their lines: those of moments too near for words of their own are counted in the words before. */
+/**
+ * Marks in the order of x with the words beside their lines: before them, where the axis is too near behind. Those of moments too near for words of their own
+ * are counted in the words before.
+ */
 export function moments(marks, [from, to], wide) {
   const apart = (APART * (to - from)) / wide;
   const out = [];
   let first = null;
   for (const { x, text } of [...marks].sort((a, b) => a.x - b.x).filter((mark) => mark.x >= from && mark.x <= to)) {
-    if (first && x - first.x < apart) {
+    if (first && x - first.x < apart * (first.behind ? 2 : 1)) {
       ++first.more;
       out.push({ x, words: '' });
     } else {
-      first = { x, text, more: 0 };
+      first = { x, text, more: 0, behind: x - from < apart };
       out.push(first);
     }
   }
-  return out.map(({ x, text, more, words }) => ({ x, words: words ?? `${text}${more ? `, ${more} more` : ''}` }));
+  return out.map(({ x, text, more, words, behind }) => ({ x, behind, words: words ?? `${text}${more ? `, ${more} more` : ''}` }));
 }
 
 /** Where words at a level stand clear of the curves: above or below it, at the right or the left end; for nowhere below at the right. */
