@@ -3,15 +3,15 @@ motions of the front page.
 
 Pictures are kept in BUILD/docs/gallery under the hash of the program and of the command, so that a second build draws none.
 """
-import base64
 import hashlib
 import html
 import json
 import re
 import shutil
 import subprocess
-import zlib
 from concurrent.futures import ThreadPoolExecutor
+
+import playground
 
 # Options for systems that 10 s from their own start do not show well.
 OPTIONS = {
@@ -92,22 +92,20 @@ def picture(program, root, folder, entry):
 
 
 def address(program, root, entry):
-    """The page of the playground with this run in it; its fragment is that of `fragmentOf` in tools/playground/page/src/state.js."""
-    state = {"system": "" if entry.file else entry.name, "options": {}, "parameters": {}, "inputs": {}}
+    """The page of the playground with this run in it."""
+    text, options, inputs = "", {}, {}
     if entry.file.endswith(".toml"):
-        state["text"] = (root / entry.file).read_text()
+        text = (root / entry.file).read_text()
     elif entry.file:  # the playground reads no robots
-        state["text"] = hamel(program, "describe", *entry.system, "--toml", root=root).stdout
+        text = hamel(program, "describe", *entry.system, "--toml", root=root).stdout
     for option, value in re.findall(r"--(\S+)(?: (?!--)(\S+))?", " ".join(entry.run)):
         if option == "input":
             name, given = value.split("=")
             if not given.endswith(".csv"):  # the playground has a slider for each input, and no tables
-                state["inputs"][name] = float(given)
+                inputs[name] = float(given)
         else:
-            state["options"][option.replace("-", "_")] = value or "true"
-    packed = zlib.compressobj(9, wbits=-15)
-    data = packed.compress(json.dumps(state).encode()) + packed.flush()
-    return "playground/index.html#~" + base64.urlsafe_b64encode(data).decode().rstrip("=")
+            options[option.replace("-", "_")] = value or "true"
+    return playground.address(text, "" if entry.file else entry.name, options, inputs)
 
 
 def number(value):
@@ -116,7 +114,7 @@ def number(value):
     return ", ".join(f"{x:.6g}" for x in value) if isinstance(value, list) else f"{value:.6g}"
 
 
-def facts(program, root, entry, playground):
+def facts(program, root, entry, linked):
     words = entry.system
     if entry.is_configuration:
         words = re.findall(r'^system = "(\w+)"', (root / entry.file).read_text(), re.M)
@@ -125,8 +123,8 @@ def facts(program, root, entry, playground):
     command = " ".join(["hamel run", *entry.system, *entry.run, f"--report {entry.name}.html"])
     lines = [f"## {entry.name}\n", f"{summary[0].upper()}{escape(summary[1:])}.\n", f"![{entry.name}](/images/gallery/{entry.name}.png)\n",
              "```", re.sub(r"(.{60,}?) (?=--)", r"\1 \\\n    ", command), "```\n"]
-    if playground:
-        lines.append(f'```{{raw}} html\n<p><a href="{address(program, root, entry)}">Open it in the playground</a></p>\n```\n')
+    if linked:
+        lines.append(playground.link(address(program, root, entry), "Open it in the playground"))
     rows = [("Group", told["group"]), ("Equations", escape(told.get("formula", ""))), ("Exactly known", escape(told.get("known", ""))),
             ("Source", escape(told.get("source", "")))]
     if entry.file:
@@ -166,7 +164,6 @@ def tiles(listed):
 
 def texts(root, build, site):
     program = str(build / "tools/hamel")
-    playground = (build / "playground/site/index.html").exists()
     systems = json.loads(hamel(program, "list", "systems", "--json").stdout)
     registered, examples = entries([system["name"] for system in systems])
     told = "".join((root / entry.file).read_text() for entry in examples)
@@ -179,7 +176,7 @@ def texts(root, build, site):
     both = registered + examples
     with ThreadPoolExecutor(2) as pool:
         drawn = list(pool.map(lambda entry: picture(program, root, folder, entry), both))
-        texts = list(pool.map(lambda entry: facts(program, root, entry, playground), both))
+        texts = list(pool.map(lambda entry: facts(program, root, entry, playground.is_built(build)), both))
     for file in drawn:
         site.image(file, "images/gallery")
     texts = [text.replace("(/{})", f"({site.file_page(root / entry.file, entry.file)})") if entry.file else text

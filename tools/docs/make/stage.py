@@ -11,6 +11,7 @@ from pathlib import Path
 import gallery
 import mathematics
 import notebooks
+import playground
 import printed
 
 INCLUDE = re.compile(r"```\{include\} (\S+)\n((?::[a-z-]+:.*\n)*)")
@@ -33,6 +34,7 @@ def slug(heading):
 class Site:
     def __init__(self, root, build):
         self.root, self.pages = root, root / "tools/docs/pages"
+        self.linked = playground.is_built(build)
         self.out = build / "docs/source"
         self.mathematics = mathematics.Typesetter(Path(__file__).parent / "typeset.mjs", build / "docs/npm")
         self.placed = {}  # (README, anchor or "") -> page of the site with its anchor
@@ -49,7 +51,8 @@ class Site:
         return {path.relative_to(self.pages).as_posix(): path.read_text() for path in sorted(self.pages.rglob("*.md"))}
 
     def place_readmes(self, texts):
-        """Determines the page of each part of a README."""
+        """Determines the page of each part of a README, and of the whole: the one that has its beginning."""
+        firsts = {}
         for page, text in texts.items():
             for file, options in INCLUDE.findall(text):
                 if file.startswith("generated"):
@@ -61,7 +64,8 @@ class Site:
                         raise SystemExit(f"docs: {page} includes {file}, which has no '{marker}'")
                 begin = readme.index(options["start-after"]) if "start-after" in options else 0
                 end = readme.index(options["end-before"], begin) if "end-before" in options else len(readme)
-                self.placed.setdefault((file, ""), f"/{page}")
+                if begin < firsts.setdefault(file, begin + 1):
+                    firsts[file], self.placed[file, ""] = begin, f"/{page}"
                 for heading in HEADING.finditer(without_code(readme)):
                     if begin <= heading.start() < end:
                         is_start = "start-after" in options and heading.start() == begin
@@ -131,11 +135,15 @@ class Site:
         self.place_readmes(texts)
         for page, text in texts.items():
             text = self.rewritten(text, f"tools/docs/pages/{page}")
+            if self.linked:
+                text = playground.with_links(text, page)
             self.write(page, INCLUDE.sub(lambda m: f"```{{include}} /{'' if m[1].startswith('generated') else 'readme/'}{m[1]}\n{m[2]}", text))
         for file in {file for file, _ in self.placed}:
             text = self.rewritten((self.root / file).read_text(), file)
             if self.placed[file, ""] == "/method.md":
                 text = self.mathematics.typeset(text)
+            if self.linked:
+                text = playground.with_links(text, self.placed[file, ""][1:])
             self.write(f"readme/{file}", text)
 
     def clean(self):
@@ -149,6 +157,8 @@ def main(root, build):
     for name, text in printed.texts(root, build).items():
         site.write(f"generated/{name}", text)
     for name, text in gallery.texts(root, build, site).items():
+        site.write(f"generated/{name}", text)
+    for name, text in playground.texts(build).items():
         site.write(f"generated/{name}", text)
     if list((build / "tools/python/hamel").glob("_hamel.*.so")):
         notebooks.write(root, build, site)

@@ -15,10 +15,11 @@ if (!existsSync(join(site, 'playground.html'))) {
 export const { launch, PATIENCE } = await import(pathToFileURL(join(build, 'playground/tools/report/test/browser.mjs')));
 mkdirSync(looks, { recursive: true });
 
-const TYPES = { '.html': 'text/html', '.js': 'text/javascript', '.css': 'text/css', '.wasm': 'application/wasm' };
-const server = createServer((request, response) => {
-  const file = join(site, new URL(request.url, 'http://x').pathname.replace(/\/$/, '/index.html'));
-  if (!existsSync(file)) return response.writeHead(404).end();
+const TYPES = { '.html': 'text/html', '.js': 'text/javascript', '.css': 'text/css', '.wasm': 'application/wasm', '.png': 'image/png', '.svg': 'image/svg+xml', '.woff2': 'font/woff2' };
+const server = createServer((request, response) => {  // below /docs the documentation site
+  const path = new URL(request.url, 'http://x').pathname.replace(/\/$/, '/index.html');
+  const file = path.startsWith('/docs/') ? join(build, 'docs/html', path.slice(5)) : join(site, path);
+  if (!existsSync(file)) return response.writeHead(path === '/favicon.ico' ? 204 : 404).end();
   response.writeHead(200, { 'content-type': TYPES[extname(file)] ?? 'text/plain' }).end(readFileSync(file));
 });
 await new Promise((done) => { server.listen(0, '127.0.0.1', done); });
@@ -44,9 +45,13 @@ export async function open(url, { context, ...options } = {}) {
     if (!/^(file|data|blob):/.test(request.url()) && !request.url().startsWith(address)) complaints.push(`a request to ${request.url()}`);
   });
   await page.goto(url);
+  if (!url.startsWith(`${address}docs/`)) await ready(page);
+  return page;
+}
+/** Waits for the first run of the playground. */
+export async function ready(page) {
   await page.waitForSelector('html[data-ready=true]', { state: 'attached' });
   page.first = Number(await page.getAttribute('html', 'data-first'));  // milliseconds from the navigation to the first picture
-  return page;
 }
 export const complete = (page) => page.waitForSelector('html[data-complete=true]', { state: 'attached' });
 export const runs = (page) => page.evaluate(() => Number(document.body.dataset.runs ?? 0));
