@@ -264,13 +264,15 @@ TEST_F(Describe, LargeMechanisms) {
   }
 }
 
-/// Seconds are shown, on a terminal only: the brackets of a skateboard go eight fields deep.
+/// Seconds are shown, on a terminal only: the conserved quantities of car_with_differential take a
+/// second.
 TEST_F(Describe, AnalysisShowsItsTime) {
   if (std::system("command -v script >/dev/null") != 0) HAMEL_SKIP_WITHOUT("script(1)");
   const std::string command = "cd " + file("") + " && script -qec \"$HAMEL_PROGRAM describe " +
-                              "--analyse skateboard\" /dev/null >seen.txt </dev/null";
+                              "--analyse $HAMEL_SOURCE/tests/examples/car_with_differential.toml\" "
+                              "/dev/null >seen.txt </dev/null";
   ASSERT_EQ(std::system(command.c_str()), 0);
-  EXPECT_THAT(contents(file("seen.txt")), HasSubstr("skateboard is analysed: 1 s"));
+  EXPECT_THAT(contents(file("seen.txt")), HasSubstr("car_with_differential.toml is analysed: 1 s"));
   EXPECT_EQ(run({"describe", "--analyse", "suslov"}).err, "");
 }
 
