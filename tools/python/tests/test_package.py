@@ -388,7 +388,7 @@ def test_equations_as_text():
     assert "$$" in equations._repr_latex_()
     with pytest.raises(hamel.ConfigError, match="did you mean 'latex'"):
         equations.formulas("latx")
-    assert hamel.equations("snakeboard")._repr_latex_() is None
+    assert hamel.equations("roller_racer")._repr_latex_() is None
     part = hamel.Mechanism("sled")
     part.body("sled", mass=1, box=(1, 1, 1))
     part.planar("floor", "sled")
