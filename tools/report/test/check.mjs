@@ -34,6 +34,7 @@ const plot = { kind: 'plot', title: 'A plot', x: 'x', y: 'y', series };
 const tinyPath = { kind: 'path', title: 'A turn in place', x: 'x [m]', y: 'y [m]', series: [{ name: 'a', x: [0, 3e-18, -8.7e-18, 1.5e-17], y: [0, 1.2e-17, -3.6e-17, -1.2e-17] }] };
 const unmarked = { ...errorMap, marks: undefined };
 const strikes = { ...plot, series: [{ name: 'a', x: Array.from({ length: 61 }, (_, i) => i / 30), y: Array.from({ length: 61 }, (_, i) => (i % 7) / 7) }], marks: [0.002, 0.1, 0.2, 0.9, 1.3, 1.31, 1.34, 1.37, 1.375, 1.38, 1.9].map((at, i) => ({ x: at, text: `corner ${i % 4}.strikes` })) };
+const sparse = (apart) => ({ ...plot, log_y: true, series: [{ name: 'a', x: Array.from({ length: 200 }, (_, i) => i), y: Array.from({ length: 200 }, (_, i) => (i % apart === 1 ? 1e-17 * (i + 1) : 0)) }] });
 const modes = { kind: 'heatmap', title: 'Modes', x: 't [s]', y: 'contact', x_values: [0, 1, 2], y_values: ['left', 'right'], classes: ['open', 'rolls', 'slides'], values: [[0, 0, 0], [0, 0, 0]] };
 
 /** A page with one more script at its end. */
@@ -102,6 +103,9 @@ const cases = [
   ['moments that crowd', small(strikes), 0, /passed, 0 failed/],
   ['words at every moment', () => bent(strikes, 'charts/markings.js', 'const APART = 14', 'const APART = 0'), 1, /no words of a figure overlap at 1280 px/],
   ['words on the axis', () => bent(strikes, 'charts/markings.js', 'x - from < apart }', 'false }'), 1, /no words of a figure overlap at 390 px/],
+  ['few points between gaps', small(sparse(30)), 0, /passed, 0 failed/],
+  ['many points between gaps', small(sparse(3)), 0, /passed, 0 failed/],
+  ['many points between gaps that are not there', () => bent(sparse(3), 'charts/plot.js', '|| alone.size > 0, showAllSymbol', ', showAllSymbol'), 1, /shows curves: 0 coloured pixels/],
   ['contacts that never close', small(modes), 0, /passed, 0 failed/],
   ['contacts of all modes', small({ ...modes, values: [[0, 1, 1], [0, 2, 0]] }), 0, /passed, 0 failed/],
   ['names of several words', small(spaced(longTable(50, 8))), 0, /passed, 0 failed/],
@@ -120,6 +124,7 @@ const cases = [
   ['too few poses', small({ ...spin, times: [0, 1, 2] }), 1, /has 2 poses for 3 times/],
   ['times that stand', small({ ...spin, times: [1, 1] }), 1, /"times" do not rise/],
   ['a clock that stands', () => bent(spin, 'stage/animation.js', '* speed.value)', '* 0)'), 1, /: plays/],
+  ['a body that rests', small({ ...spin, bodies: [{ ...spin.bodies[0], poses: [spin.bodies[0].poses[0], spin.bodies[0].poses[0]] }] }), 0, /passed, 0 failed/],
   ['a force that comes later', small(landing), 0, /passed, 0 failed/],
   ['arrows that do not come', () => bent(landing, 'stage/animation.js', 'pushing() ? arrowOf(', 'false ? arrowOf('), 1, /: arrows appear: 0 differences/],
   ['no pause', () => bent(body(), 'stage/animation.js', "const pause = () => {\n    playing = false;", 'const pause = () => {'), 1, /: pauses/],

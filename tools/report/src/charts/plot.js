@@ -130,9 +130,9 @@ function option(block, data, equal, width, height, seen) {
   };
 }
 
-const oneSeries = ({ id, name, style, points, lows, dots, markers }, sorted) => ({
+const oneSeries = ({ id, name, style, points, lows, dots, markers, alone }, sorted) => ({
   id, name, type: 'line', data: points, clip: true, silent: true,
-  showSymbol: Boolean(markers), symbol: 'circle', symbolSize: dots ? 4.5 : 6.5, sampling: sorted && !dots && points.length > LONG ? 'minmax' : undefined,
+  showSymbol: Boolean(markers) || alone.size > 0, showAllSymbol: alone.size > 0 || 'auto', symbol: 'circle', symbolSize: dots ? 4.5 : markers ? 6.5 : (_, { dataIndex }) => (alone.has(dataIndex) ? 3.5 : 0), sampling: sorted && !dots && points.length > LONG ? 'minmax' : undefined,
   lineStyle: { color: style.colour, width: dots ? 0 : lows.length ? 1 : 1.6, type: style.dash.length ? style.dash : 'solid', cap: 'round', join: 'round' }, itemStyle: { color: style.colour, borderWidth: 0 },
   emphasis: { focus: 'series', lineStyle: { color: style.colour, width: dots ? 0 : 2.4 }, itemStyle: { color: style.colour } }, blur: { lineStyle: { opacity: 0.18 }, itemStyle: { opacity: 0.18 } },
   markPoint: sorted || !points[0] ? undefined : { silent: true, symbol: 'circle', symbolSize: 8, label: { show: false },

@@ -30,7 +30,7 @@ export function extent(values) {
   return values.reduce(([a, b], v) => (Number.isFinite(v) ? [Math.min(a, v), Math.max(b, v)] : [a, b]), [Infinity, -Infinity]);
 }
 
-/** -> {x, y: axes, curves: [{name, style, points: [[x, y, member?], …], lows: the same of the lower edge of a band, envelope, dots, markers, tags, fit}], hidden}; `sorted` in order of x. */
+/** -> {x, y: axes, curves: [{name, style, points: [[x, y, member?], …], lows: the same of the lower edge of a band, envelope, dots, markers, alone: the numbers of points between gaps, tags, fit}], hidden}; `sorted` in order of x. */
 export function readSeries(block, sorted) {
   if (!Array.isArray(block.series)) throw new Error('no list "series"');
   block.series.forEach((s, i) => {
@@ -45,8 +45,11 @@ export function readSeries(block, sorted) {
   const curves = block.series.map((s) => {
     const points = s.x.map((v, i) => (s.members ? [x.to(v), y.to(s.y[i]), s.members[i]] : [x.to(v), y.to(s.y[i])]));
     hidden += s.x.filter((v, i) => (x.log && v !== null && v <= 0) || (y.log && s.y[i] !== null && s.y[i] <= 0)).length;
+    const isThere = (p) => p !== undefined && p[0] !== null && p[1] !== null;
+    const few = points.filter(isThere).length <= FEW;  // as far as they can be drawn
     if (sorted && s.x.some((v, i) => i > 0 && v < s.x[i - 1])) points.sort((a, b) => a[0] - b[0]);
-    return { name: prose(String(s.name ?? '')), style: styleOf(s), points, lows: s.low?.map((v, i) => [points[i][0], y.to(v)]) ?? [], envelope: Boolean(s.envelope), dots: Boolean(s.dots), markers: s.dots || (s.markers ?? (sorted && points.length <= FEW)), tags: s.tags,
+    return { name: prose(String(s.name ?? '')), style: styleOf(s), points, lows: s.low?.map((v, i) => [points[i][0], y.to(v)]) ?? [], envelope: Boolean(s.envelope), dots: Boolean(s.dots), markers: s.dots || (s.markers ?? (sorted && few)), tags: s.tags,
+      alone: new Set(points.flatMap((p, i) => (isThere(p) && !isThere(points[i - 1]) && !isThere(points[i + 1]) ? [i] : []))),
       fit: s.fit ? String(s.fit.text || `slope ${s.fit.slope?.toFixed(2)}`) : '', picked: true, show: true };
   });
   return { x, y, curves, hidden };
