@@ -8,7 +8,7 @@
 namespace hamel::reduced {
 namespace {
 
-constexpr double kRoundOff = 1e-15;  // of rates of coordinates
+constexpr double kRoundOff = 1e-15;  // of what is evaluated at one place
 
 }  // namespace
 
@@ -67,7 +67,9 @@ Slopes exact_input_slopes(const SteadyEquations& equations, const SteadyPoint& a
         return slopes_at(flow.moved(at.g, e * along.head(n)), at.xi + e * along.tail(n)).reshaped();
       },
       0x1p-30);
-  return {.value = slopes_at(at.g, at.xi), .error = noise.reshaped(n + k, count)};
+  const Matrix value = slopes_at(at.g, at.xi);
+  return {.value = value,
+          .error = noise.reshaped(n + k, count).cwiseMax(kRoundOff * value.cwiseAbs())};
 }
 
 Slopes differenced_input_slopes(const SteadyEquations& equations,

@@ -75,14 +75,15 @@ SteadyPoint SteadyEquations::point_beside(const SteadyPoint& at, const Reach& re
 // The error of exact derivatives is their round-off, of differences that of their estimates, with
 // the round-off of values.
 SteadyEquations::Slope SteadyEquations::slope_with_error(const SteadyPoint& at) const {
-  constexpr double step = 0x1p-30;
+  constexpr double step = 0x1p-30, kRoundOff = 1e-15;
   const int n = dim();
   Slope out;
   if (flow_.recorded() != nullptr) {
     out.value = derivative(at);
     const Vector noise = noise_of(
         [&](double e) { return Vector(derivative(point_beside(at, reach_, e)).reshaped()); }, step);
-    out.error = noise.reshaped(out.value.rows(), out.value.cols());
+    out.error = noise.reshaped(out.value.rows(), out.value.cols())
+                    .cwiseMax(kRoundOff * out.value.cwiseAbs());
     return out;
   }
   Reach reach = reach_;
