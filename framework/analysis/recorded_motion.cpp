@@ -5,10 +5,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include <Eigen/LU>
-
 #include <hamel/framework/analysis/motion_formulas.hpp>
 #include <hamel/framework/graph/derivatives.hpp>
+#include <hamel/framework/metric/metric.hpp>
 
 namespace hamel {
 namespace {
@@ -79,12 +78,12 @@ bool agrees(const RecordedMotion& recorded, const SystemModel& model, const Geom
          near(found.change, change, change.norm() + inertia.norm());
 }
 
-Eigen::MatrixXd saddle(const MotionValues& terms) {
-  const Eigen::Index n = terms.inertia.rows(), k = terms.rows.rows();
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(n + k, n + k);
-  out.topLeftCorner(n, n) = terms.inertia;
-  out.topRightCorner(n, k) = -terms.rows.transpose();
-  out.bottomLeftCorner(k, n) = terms.rows;
+Metric<> metric_of(const MotionValues& terms) {
+  Metric<> out(static_cast<int>(terms.inertia.rows()), static_cast<int>(terms.rows.rows()));
+  out.inertia = terms.inertia;
+  out.a = terms.rows;
+  out.b = terms.drift;
+  out.factor(true, terms.rows.rows() > 0);
   return out;
 }
 
@@ -200,26 +199,26 @@ std::vector<MotionValues> RecordedMotion::along(const Vector& g, const Vector& x
 
 Eigen::VectorXd RecordedMotion::acceleration(const Vector& g, const Vector& xi, double t) const {
   const MotionValues terms = at(g, xi, t);
-  Vector right(n_ + k_);
-  right << terms.change, terms.row_rates;
-  return Vector(saddle(terms).partialPivLu().solve(right)).head(n_);
+  Vector out(n_);
+  metric_of(terms).solve(terms.change, terms.row_rates, out);
+  return out;
 }
 
 Eigen::MatrixXd RecordedMotion::acceleration_slopes(const Vector& g, const Vector& xi,
                                                     const std::vector<MotionValues>& slopes) const {
   const MotionValues terms = at(g, xi);
-  const Eigen::PartialPivLU<Matrix> factors(saddle(terms));
-  Vector right(n_ + k_);
-  right << terms.change, terms.row_rates;
-  const Vector solved = factors.solve(right);
-  const Vector a = solved.head(n_), lambda = solved.tail(k_);
-  Matrix rights(n_ + k_, static_cast<Eigen::Index>(slopes.size()));
-  for (Eigen::Index j = 0; j < rights.cols(); ++j) {
+  Metric<> metric = metric_of(terms);
+  Vector a(n_), slope(n_);
+  metric.solve(terms.change, terms.row_rates, a);
+  const Vector lambda = metric.multipliers(terms.change, a);
+  Matrix out(n_, static_cast<Eigen::Index>(slopes.size()));
+  for (Eigen::Index j = 0; j < out.cols(); ++j) {
     const MotionValues& d = slopes[static_cast<size_t>(j)];
-    rights.col(j) << d.change - d.inertia * a + d.rows.transpose() * lambda,
-        d.row_rates - d.rows * a;
+    metric.solve(d.change - d.inertia * a + d.rows.transpose() * lambda, d.row_rates - d.rows * a,
+                 slope);
+    out.col(j) = slope;
   }
-  return Matrix(factors.solve(rights)).topRows(n_);
+  return out;
 }
 
 }  // namespace hamel

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include <hamel/framework/lie/decompositions.hpp>
+#include <hamel/framework/metric/metric.hpp>
 
 namespace hamel::reduced {
 
@@ -129,8 +130,9 @@ void Flow::find_rates(const Vector& g, const Vector& xi, const Vector& extents, 
 Vector Flow::acceleration(const Vector& g, const Vector& xi, const Vector& extents) const {
   if (recorded_ != nullptr) return recorded_->acceleration(g, xi);
   const int n = dim(), k = constraint_count();
-  Matrix inertia(n, n), a(k, n);
-  Vector b(k), row_rate(k), change(n);
+  Metric<> metric(n, k);
+  Matrix &inertia = metric.inertia, &a = metric.a;
+  Vector &b = metric.b, row_rate(k), change(n);
   if (mechanics_->constant_inertia()) mechanics_->inertia(g.data(), inertia);
   if (k > 0 && mechanics_->constant_constraints()) mechanics_->constraints(0, g.data(), a, b);
   if (mechanics_->exact_rates()) {
@@ -145,13 +147,10 @@ Vector Flow::acceleration(const Vector& g, const Vector& xi, const Vector& exten
     geometry_->ad_transpose(xi.data(), mu.data(), turned.data());
     change += turned - momentum_rate;
   }
-  Matrix whole = Matrix::Zero(n + k, n + k);
-  whole.topLeftCorner(n, n) = inertia;
-  whole.topRightCorner(n, k) = -a.transpose();
-  whole.bottomLeftCorner(k, n) = a;
-  Vector right(n + k);
-  right << change, row_rate;
-  return Vector(whole.partialPivLu().solve(right)).head(n);
+  metric.factor(true, k > 0);
+  Vector out(n);
+  metric.solve(change, row_rate, out);
+  return out;
 }
 
 // The rows of phi are their differentials, the last rows of A.
