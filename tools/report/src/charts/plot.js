@@ -109,10 +109,11 @@ function option(block, data, equal, width, height, seen) {
   const shown = data.curves.map((curve, i) => ({ ...curve, id: String(i) })).filter((curve) => curve.show && curve.points.length > 0);
   const margin = { ...MARGIN };
   const across = equal ? null : rangeOf(shown, 0, data.x);
-  const marked = equal ? null : markings(block, shown, data, seen.x ?? across, width - margin.left - margin.right);
+  const marks = () => (equal ? null : markings(block, shown, data, seen.x ?? across, width - margin.left - margin.right));
+  const { least, range } = marks() ?? {};
   const yTicks = (range) => ticksOf(data.y, seen.y ?? range, height / 50);
   const widthOf = (ticks) => Math.ceil(widest(ticks.at.map(ticks.read)));
-  let ranges = equal ? null : { x: across, y: downTo(marked.least, marked.range ?? rangeOf(shown, 1, data.y)) };
+  let ranges = equal ? null : { x: across, y: downTo(least, range ?? rangeOf(shown, 1, data.y)) };
   // Equal scales need the margin beforehand: that of their labels where those are wide, as of tiny numbers.
   if (equal) margin.left = Math.max(MARGIN.left, widthOf(yTicks(equalRanges(shown, width, height, margin).y)) + BESIDE);
   if (equal) ranges = equalRanges(shown, width, height, margin);
@@ -122,7 +123,7 @@ function option(block, data, equal, width, height, seen) {
   return {
     grid: { ...margin, outerBoundsMode: 'none' },
     xAxis: oneAxis(data.x, ranges.x, 30, ticksOf(data.x, seen.x ?? ranges.x, Math.max(4, width / 90)), BELOW), yAxis: oneAxis(data.y, ranges.y, labels + 14, y),
-    series: [...shown.filter((curve) => curve.lows.length).flatMap(band), ...shown.map((curve) => oneSeries(curve, !equal)), ...(marked?.series ?? [])],
+    series: [...shown.filter((curve) => curve.lows.length).flatMap(band), ...shown.map((curve) => oneSeries(curve, !equal)), ...(marks()?.series ?? [])],  // now that the margin is known
     tooltip: { ...TOOLTIP, trigger: 'axis', axisPointer: { type: equal ? 'cross' : 'line', label: { show: equal, backgroundColor: 'var(--ink)', color: 'var(--paper)',
       formatter: ({ value, axisDimension }) => formatNumber(data[axisDimension].from(value)) }, lineStyle: { color: 'var(--soft)' }, crossStyle: { color: 'var(--soft)' } },
     showContent: !equal, formatter: (list) => readOut(list, data) },
