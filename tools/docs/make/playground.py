@@ -34,7 +34,10 @@ def with_links(text, page):
 def texts(build):
     """Of the front page and of the tutorial: how to begin without installing anything."""
     if not is_built(build):
-        where = "- **In the browser**, with nothing to install: [the playground](/howto/playground.md), which this copy of the site was built without.\n"
+        where = (
+            '```{raw} html\n<p class="try first"><a href="howto/playground.html">The playground</a> moves them in a browser, with nothing to '
+            "install; this copy of the site was built without it.</p>\n```\n"
+        )
         return {"try_first.txt": where, "try_files.txt": ""}
     return {
         "try_first.txt": "```{raw} html\n"
