@@ -29,7 +29,17 @@ def test_equations_at_a_state():
 
 
 @pytest.mark.parametrize(
-    "name", ["chaplygin_sleigh", "bicycle", "falling_disk", "segway", "car", "routh_sphere"]
+    "name",
+    [
+        "chaplygin_sleigh",
+        "bicycle",
+        "falling_disk",
+        "segway",
+        "car",
+        "routh_sphere",
+        "snakeboard",
+        "n_trailer",
+    ],
 )
 def test_equations_as_numpy(name):
     equations = hamel.equations(name)
