@@ -88,6 +88,7 @@ class Driver {
   // Steps in so many pieces that what watches them sees each: the largest next piece.
   long piece_of(long count) const;
   // After a piece: not ok where the run would not end, or has taken all the steps that it may.
+  std::optional<std::string> why_steps_end(long steps, double t);
   Status steps_go_on(long steps, const Snapshot& now);
   bool count_tries(long steps);
   void limit_grid(long count);

@@ -35,20 +35,28 @@ bool Driver::count_tries(long steps) {
   return steps_.until_next() <= 0;
 }
 
+// Why chosen steps would not end, or could not be as exact as they are to be.
+std::optional<std::string> Driver::why_steps_end(long steps, double t) {
+  const bool due = count_tries(steps);
+  const bool creep = steps_.look(t);
+  const double usual = steps_.shrunk_from();
+  if (!creep && !(due && (steps_.rejects() || usual > 0))) return {};
+  KernelSetup setup = plan_.setup;
+  if (plan_.contacts != nullptr) setup.mechanics = plan_.contacts->in_modes();
+  if (!creep) return reason_of_round_off(*plan_.system, setup, kernel(), usual);
+  std::string why = reason_of_small_steps(*plan_.system, setup, kernel(), usual);
+  if (plan_.contacts != nullptr)
+    why += "; the scheme nonsmooth takes slow slips in steps of one size";
+  return why;
+}
+
 Status Driver::steps_go_on(long steps, const Snapshot& now) {
   const Config& config = plan_.config;
   const auto ends = [&](const std::string& reason) {
     return Status{false, now.step, now.time, now.residual, reason};
   };
-  if (config.chooses_steps()) {
-    const bool due = count_tries(steps);
-    const bool creep = steps_.look(now.time);
-    const double usual = steps_.shrunk_from();
-    if (creep) return ends(reason_of_small_steps(*plan_.system, plan_.setup, kernel(), usual));
-    if (due && (steps_.rejects() || usual > 0))
-      if (const auto reason = reason_of_round_off(*plan_.system, plan_.setup, kernel(), usual))
-        return ends(*reason);
-  }
+  if (config.chooses_steps())
+    if (const auto why = why_steps_end(steps, now.time)) return ends(*why);
   if (config.steps_max > 0 && kernel().whole_steps() >= config.steps_max)
     return ends(fmt::format("steps_max = {} steps are taken", config.steps_max));
   return {};

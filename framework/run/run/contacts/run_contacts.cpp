@@ -82,6 +82,10 @@ const Eigen::VectorXd& RunContacts::reactions(double t, const double* g,
   return measured_->reactions();
 }
 
+std::shared_ptr<const Mechanics> RunContacts::in_modes() const {
+  return std::make_shared<ModeMechanics>(measured_, states_);
+}
+
 std::shared_ptr<const Mechanics> RunContacts::balanced(
     const std::shared_ptr<RunContacts>& self) const {
   return std::make_shared<WithFriction>(system_->mechanics, self);

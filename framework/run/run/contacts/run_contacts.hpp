@@ -22,6 +22,7 @@ struct FollowedContact {
   double struck = -1e300, between = 0;  // last strike, and the time before it since another
   double speed = 0;                     // m/s: the largest speed_scale() so far
   double height = 0;                    // m: the largest gap so far
+  bool held = false;  // open, at a height that others hold; found again at each node
   template <class Archive>
   void serialize(Archive& archive) {
     archive(opened, struck, between, speed, height);
@@ -89,6 +90,8 @@ class RunContacts {
   double reaction_power() { return measured_->reaction_power(); }
   /// Behind the power of balanced(): that of friction at contact i.
   double friction_power(int i) const { return any_slides() ? measured_->friction_power(i) : 0; }
+  /// The system in the modes of the run.
+  std::shared_ptr<const Mechanics> in_modes() const;
   /// The system as its energy is followed: with the power of friction.
   std::shared_ptr<const Mechanics> balanced(const std::shared_ptr<RunContacts>& self) const;
 
@@ -96,7 +99,7 @@ class RunContacts {
   void serialize(Archive& archive) {
     for (ContactState& s : *states_) {
       int mode = static_cast<int>(s.mode);
-      archive(mode, s.direction[0], s.direction[1], s.no_slip, s.begins);
+      archive(mode, s.direction[0], s.direction[1], s.no_slip, s.begins, s.ease);
       s.mode = static_cast<ContactMode>(mode);
     }
     for (FollowedContact& f : followed_) f.serialize(archive);

@@ -2,7 +2,8 @@
 //
 // Steps creep where, over a thousand tries in a row, they advance by less than 1e-6 of the run
 // each, and by less than 1e-3 of what a step of the same run has advanced before: a run whose steps
-// are small from its start, since it is long or stiff, does not creep.
+// are small from its start, since it is long or stiff, does not creep. Nor do steps that grow
+// again: the slip of a contact that has just begun is stiff as long as it is small.
 #pragma once
 
 #include <algorithm>
@@ -35,7 +36,9 @@ class StepWatch {
     const bool shrunk = each < 1e-2 * largest_,
                small = each < 1e-3 * largest_ && each < 1e-6 * span_;
     shrunk_ = shrunk ? shrunk_ + since_ : 0;
-    small_ = small ? small_ + since_ : 0;
+    const bool grows = each > kGrows * of_small_;
+    small_ = small && !grows ? small_ + since_ : 0;
+    of_small_ = small ? std::max(of_small_, each) : 0;
     largest_ = std::max(largest_, each);
     window_ = std::min(2 * window_, kWindow);  // a run may begin with few large steps
     last_ = t;
@@ -47,14 +50,15 @@ class StepWatch {
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(last_, largest_, window_, since_, small_, shrunk_, rejected_, last_rejected_,
+    archive(last_, largest_, window_, since_, small_, of_small_, shrunk_, rejected_, last_rejected_,
             last_tries_);
   }
 
  private:
   static constexpr long kWindow = 256, kFew = 32;
+  static constexpr double kGrows = 1.05;  // of the largest steps since they are small
 
-  double last_ = 0, span_ = 0, largest_ = 0;
+  double last_ = 0, span_ = 0, largest_ = 0, of_small_ = 0;
   long window_ = 1, since_ = 0, small_ = 0, shrunk_ = 0, rejected_ = 0, last_rejected_ = 0,
        last_tries_ = 0;
 };
