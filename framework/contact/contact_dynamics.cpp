@@ -11,6 +11,10 @@ namespace {
 
 // A height that others hold gives way to its load by no more than this, of what it would alone.
 constexpr double kHeld = 1e-9;
+// Directions of several contacts that begin to slide turn by less than this in the last sweep: eps
+// of (5) is small beside this part of a slip that has grown.
+constexpr double kTurns = 1e-10;
+constexpr int kSweeps = 200;
 
 std::vector<int> rows_of_none(const Mechanics& mechanics, const std::vector<ContactLaw>& laws) {
   std::vector<int> out;
@@ -36,6 +40,7 @@ ContactDynamics::ContactDynamics(std::shared_ptr<const Geometry> geometry,
       always_(rows_of_none(*mechanics_, laws_)),
       metric_(mechanics_->dim(), static_cast<int>(always_.size())),
       pivots_(3 * count()),
+      limit_(2 * count(), count()),
       problems_{Problem(3 * count(), count()), Problem(3 * count(), count())} {
   for (const ContactLaw& law : laws_) constant_loads_.push_back(law.load);
   const int n = mechanics_->dim(), k = mechanics_->constraint_count(), most = 3 * count();
@@ -59,6 +64,7 @@ ContactDynamics::ContactDynamics(std::shared_ptr<const Geometry> geometry,
   work_m_.setZero(most);
   normal_equations_.setZero(most, most);
   directions_.resize(contacts, {1, 0});
+  first_.resize(contacts, {1, 0});
   normal_.resize(contacts);
   coefficient_.resize(contacts);
   tangential_.resize(contacts);
@@ -134,14 +140,23 @@ double ContactDynamics::scale_at(int i, const Eigen::VectorXd& velocity) {
   return std::sqrt(std::fmax(0, twice_energy * reach));
 }
 
+double ContactDynamics::friction_acceleration(int i) {
+  double reach = 0;
+  for (const int row : law(i).tangential) {
+    respond_to(row, 0);
+    reach += row_times(row, responses_.col(0));
+  }
+  return law(i).friction * (law(i).normal ? normal_reaction(i) : law(i).load) * reach;
+}
+
 void ContactDynamics::find_direction(const ContactStates& states, int i) {
   const ContactState& state = states[static_cast<size_t>(i)];
   const Eigen::Vector2d s = slip(i);
   const double size = s.norm();
-  const bool slips = size > state.no_slip && !state.begins;
   Eigen::Vector2d& out = directions_[static_cast<size_t>(i)];
   out = state.direction;
-  if (slips) out = s.dot(state.direction) < 0 ? Eigen::Vector2d(-s / size) : s / size;
+  if (!state.begins && size > state.no_slip)
+    out = s.dot(state.direction) < 0 ? Eigen::Vector2d(-s / size) : s / size;
 }
 
 void ContactDynamics::respond(int column) {
@@ -251,18 +266,52 @@ void ContactDynamics::take_nearest_slide(int i) {
   }
 }
 
+// The first directions of the contacts that begin to slide, once each; how far one turns, 0 where
+// there is one alone.
+double ContactDynamics::turn_first_directions(const ContactStates& states) {
+  int several = 0;
+  double turns = 0;
+  for (int i = 0; i < count(); ++i) {
+    const ContactState& state = states[static_cast<size_t>(i)];
+    if (!state.begins || state.mode != ContactMode::slides) continue;
+    ++several;
+    const Eigen::Vector2d before = direction(i);
+    if (!law(i).normal) free_acceleration(states, i);
+    find_first_direction(states, i);
+    if (!law(i).normal) free_acceleration(states);
+    turns = std::max(turns, (direction(i) - before).norm());
+  }
+  return several > 1 ? turns : 0;
+}
+
+// d of (5), each beside those of the others until none turns any more, from the ones of the last
+// node; then e, with the friction of given loads along it.
+void ContactDynamics::find_first_directions(const ContactStates& states) {
+  const auto begins = [&](int i) { return states[static_cast<size_t>(i)].begins; };
+  bool any = false, given = false;
+  for (int i = 0; i < count(); ++i) {
+    any = any || begins(i);
+    given = given || (begins(i) && !law(i).normal);
+  }
+  if (!any) return;
+  for (int sweep = 0; sweep < kSweeps && turn_first_directions(states) > kTurns; ++sweep) {
+  }
+  for (int i = 0; i < count(); ++i) {
+    if (!begins(i)) continue;
+    const auto at = static_cast<size_t>(i);
+    first_[at] = directions_[at];
+    const Eigen::Vector2d e = slip(i) + states[at].ease * first_[at];
+    if (states[at].ease > 0 && e.norm() > 0) directions_[at] = e / e.norm();
+  }
+  if (given) free_acceleration(states);
+}
+
 // The rows that are on and their responses, with directions of slip found and the acceleration
 // without them in free_.
 void ContactDynamics::set_up(const ContactStates& states) {
   for (int i = 0; i < count(); ++i) find_direction(states, i);
   free_acceleration(states);
-  for (int i = 0; i < count(); ++i) {
-    const ContactState& state = states[static_cast<size_t>(i)];
-    if (!state.begins || state.mode != ContactMode::slides) continue;
-    if (!law(i).normal) free_acceleration(states, i);
-    find_first_direction(states, i);
-    if (!law(i).normal) free_acceleration(states);
-  }
+  find_first_directions(states);
   on_.clear();
   for (int i = 0; i < count(); ++i) {
     const auto at = static_cast<size_t>(i);
@@ -302,6 +351,8 @@ bool ContactDynamics::accelerate(const ContactStates& states) {
     for (int j = 0; j < m; ++j) k_work_.data()[i + j * m] = row_times(row, responses_.col(j));
   }
   const bool several = m > 0 && on_.front().contact != on_.back().contact;
+  open_ = 0;
+  limit_.begin(0);
   if (several) solve_rows(m);
   else if (m > 0) solve_linear(k_work_.data(), multipliers_.data(), m, 1);
   acceleration_ = free_;
@@ -311,6 +362,7 @@ bool ContactDynamics::accelerate(const ContactStates& states) {
 }
 
 const Eigen::VectorXd& ContactDynamics::reactions() {
+  limit();
   reactions_.setZero();
   // A^T l = I xi' - the forces, of which those of contacts are known.
   force_ = change_;

@@ -12,8 +12,9 @@
 // there. A contact with a given load in place of N has the force -mu load T^T s/|s| when it slides.
 // Where rows of contacts that roll depend on each other (four wheels of a cart) the motion is
 // unique, and their reactions are those of the least sum of (l/(mu load))^2: contacts of equal
-// compliance. Where normal reactions do (four legs) what slides moves as its loads are, and they
-// are those of contacts that give way by l/share each, small beside all else.
+// compliance, none beyond its cone as long as the others hold the rest (limit_load.hpp). Where
+// normal reactions do (four legs) what slides moves as its loads are, and they are those of
+// contacts that give way by l/share each, small beside all else.
 //   Modes after a switch: the contact problem with G = W M_A C^T and c = W a + W' xi - b_W', of
 // contacts that slip N and C of (2) alone, of the others W.                                     (3)
 //   Impact: the contact problem with G = W M_A W^T, c = ((1 + e)(N xi - b_N), T xi - b_T), e = 0 of
@@ -21,14 +22,19 @@
 // Where several are coupled P depends on the order of their impacts, unless those that rest leave
 // without an impulse (the hind spoke of a rimless wheel) or none has friction or restitution.
 //   Where a contact in space begins to slide its slip grows as t^2 and turns with its friction at a
-// rate of about mu g/|s|, without end as t -> 0; it follows the direction d of the contact problem,
-// gamma_t = k d, to order t^2. While |s| < 1e-6 V friction has that direction: an error of order
-// (1e-6)^(3/2) of V. (5) Source: Pfeiffer, Glocker, Multibody Dynamics with Unilateral Contacts
-// (1996); Leine, Nijmeijer, Dynamics and Bifurcations of Non-Smooth Mechanical Systems (2004).
+// rate of about a/|s|, a = mu l_n T M_A T^T, without end as t -> 0: behind this it follows the
+// direction d of the contact problem, gamma_t = k d, and lags behind by d'|s|/a. While it begins
+// friction is against
+//   e = (s + eps d)/|s + eps d|,                                                                (5)
+// which is d at first, s/|s| at last, and leaves s the same lag, but for eps d'/a: the rate of e is
+// a/(|s| + eps) at most, and the error of a velocity about eps^2 d'/a. Source:
+// Pfeiffer, Glocker, Multibody Dynamics with Unilateral Contacts (1996); Leine, Nijmeijer, Dynamics
+// and Bifurcations of Non-Smooth Mechanical Systems (2004).
 #pragma once
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -37,6 +43,7 @@
 #include <Eigen/LU>
 
 #include <hamel/framework/contact/contact_problem.hpp>
+#include <hamel/framework/contact/limit_load.hpp>
 #include <hamel/framework/contact/pivots.hpp>
 #include <hamel/framework/lie/geometry.hpp>
 #include <hamel/framework/mechanics/contact_law.hpp>
@@ -52,6 +59,7 @@ struct ContactState {
   Eigen::Vector2d direction = {1, 0};  // of the slip, where it is too small to have one
   double no_slip = 0;                  // m/s: smaller slips have none
   bool begins = false;                 // it begins to slide, (5)
+  double ease = 0;                     // m/s: eps; direction is near d
 };
 using ContactStates = std::vector<ContactState>;
 
@@ -90,10 +98,25 @@ class ContactDynamics {
   /// The acceleration in these modes, (2), into acceleration(). False where the system is singular.
   bool accelerate(const ContactStates& states);
   const Eigen::VectorXd& acceleration() const { return acceleration_; }
+  /// Behind accelerate(): d of (5) of contact i, which begins to slide.
+  const Eigen::Vector2d& first_direction(int i) const { return first_[static_cast<size_t>(i)]; }
+  /// Behind accelerate(): a of (5).
+  double friction_acceleration(int i);
   /// Behind accelerate(): the multipliers of all rows, those of open contacts 0.
   const Eigen::VectorXd& reactions();
   double normal_reaction(int i) const { return normal_[static_cast<size_t>(i)]; }
-  Eigen::Vector2d tangential_reaction(int i) const { return tangential_[static_cast<size_t>(i)]; }
+  Eigen::Vector2d tangential_reaction(int i) {
+    limit();
+    return tangential_[static_cast<size_t>(i)];
+  }
+  /// How far contact i, which rolls, is from the rim of its cone, N; 0 where it begins to slide.
+  double hold_left(int i);
+  /// Does contact i, which rolls, begin to slide where `first` does?
+  bool yields_with(int i, int first);
+  /// Behind accelerate(), of an open contact whose normal row follows from those of closed ones
+  /// (the fourth of four legs): its height where these give way by l/share each, which is above 0
+  /// as long as it bears nothing. None where it is free.
+  std::optional<double> height_of_held(const ContactStates& states, int i);
   /// N M_A C^T of a contact that slides.
   double coefficient(int i) const { return coefficient_[static_cast<size_t>(i)]; }
   /// The power of these reactions, l . (A xi - b): of friction.
@@ -104,6 +127,10 @@ class ContactDynamics {
   double gap_acceleration(int i) const;
   Eigen::Vector2d slip_rate(int i) const;
 
+  /// The modes behind a switch that changes those of its contacts alone, as `states` has them:
+  /// their directions, and whether all satisfy (3). An open contact with a gap below `closed` has
+  /// to leave.
+  bool continue_in(ContactStates& states, double closed);
   /// Modes of the contacts that are closed, (3). slides: those that begin to slide in their
   /// direction. Returns why there are none, "" where there are.
   std::string decide(ContactStates& states, const std::vector<char>& slides = {});
@@ -155,6 +182,8 @@ class ContactDynamics {
   // That of (5), nearest to the one that it has.
   void find_first_direction(const ContactStates& states, int i);
   void take_nearest_slide(int i);
+  double turn_first_directions(const ContactStates& states);
+  void find_first_directions(const ContactStates& states);
   // M_A of column_, or of a row of A, into a column of responses_.
   void respond(int column);
   void respond_to(int row, int column);
@@ -174,6 +203,8 @@ class ContactDynamics {
   void add_block(int i, bool slides, const Eigen::Vector2d& d);
   // Does a contact that is closed slide already? Its direction is known then, and its friction.
   bool slides_on(ContactState& state, int i, bool told);
+  bool slips_at(const ContactBlock& block) const;
+  bool lawful(const ContactStates& states, int i, double force, double closed);
   void take_answer(ContactState& state, size_t block) const;
   // G of responses_ into k_; the solution with k_ and c_.
   void find_metric();
@@ -190,6 +221,10 @@ class ContactDynamics {
   void solve_rows(int m);
   Eigen::Map<Eigen::MatrixXd> k_map(int m) { return {k_work_.data(), m, m}; }
   void share(int m, int rank);
+  // Reactions that all hold, of contacts that roll; once behind accelerate().
+  void limit();
+  int keep_tangential(int m);
+  double holds(int i) const;
   // near: P is that of a problem next to this one.
   ContactProblem::Outcome give_way(int m, bool near);
   void give_way_by(double compliance, int m);
@@ -210,9 +245,11 @@ class ContactDynamics {
   ContactSolutions solutions_;
   Eigen::VectorXd multipliers_, c_;
   std::vector<double> normal_, coefficient_;
-  std::vector<Eigen::Vector2d> tangential_, directions_;
+  std::vector<Eigen::Vector2d> tangential_, directions_, first_;
   std::vector<Row> on_;
   Pivots pivots_;
+  LimitLoad limit_;
+  int open_ = 0;  // columns of null_ behind accelerate(), until limit() has seen them
   Eigen::MatrixXd null_, left_null_, normal_equations_;
   Eigen::VectorXd work_m_;
   std::vector<ContactBlock> blocks_;

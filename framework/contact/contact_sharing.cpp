@@ -12,6 +12,8 @@ namespace {
 constexpr double kGivesWay = 1e-9;
 // What is left of a row beside others, relative to it, that is round-off.
 constexpr double kDependent = 1e-9;
+// Reactions this near to the rims of their cones, relative to these, are on them at once.
+constexpr double kOnRim = 1e-9;
 
 }  // namespace
 
@@ -53,7 +55,7 @@ void ContactDynamics::solve_rows(int m) {
 // the bodies, in the range of R: z^T D l = 0 for all z with z^T R = 0, D = 1/share, of given loads
 // 1/(mu load)^2: Z_l^T D Z y = -Z_l^T D l. Where K is symmetric that is the least sum of D l^2.
 void ContactDynamics::share(int m, int rank) {
-  const int open = m - rank;
+  const int open = open_ = m - rank;
   pivots_.find_null(k_map(m), rank, null_);
   left_null_ = null_;
   const auto has_normal = [this](const Row& row) { return law(row.contact).has_normal(); };
@@ -82,6 +84,110 @@ void ContactDynamics::share(int m, int rank) {
   solve_linear(equations.data(), work_m_.data(), open, 1);
   for (int i = 0; i < m; ++i)
     for (int c = 0; c < open; ++c) multipliers_[i] += work_m_[c] * null_(i, c);
+}
+
+double ContactDynamics::holds(int i) const {
+  const ContactLaw& law = this->law(i);
+  return law.holding() * (law.normal ? normal_[static_cast<size_t>(i)] : law.load);
+}
+
+// Columns of null_ without the normal reactions, which stay as share() has them: how many are left,
+// the first ones.
+int ContactDynamics::keep_tangential(int m) {
+  int left = open_;
+  const double size = null_.topLeftCorner(m, open_).cwiseAbs().maxCoeff();
+  for (int i = 0; i < m; ++i) {
+    const Row& row = on_[static_cast<size_t>(i)];
+    if (law(row.contact).normal != row.row) continue;
+    int pivot = 0;
+    for (int c = 1; c < left; ++c)
+      if (std::abs(null_(i, c)) > std::abs(null_(i, pivot))) pivot = c;
+    if (left == 0 || !(std::abs(null_(i, pivot)) > kDependent * size)) continue;
+    --left;
+    null_.col(pivot).head(m).swap(null_.col(left).head(m));
+    for (int c = 0; c < left; ++c) {
+      const double part = null_(i, c) / null_(i, left);
+      null_.col(c).head(m) -= part * null_.col(left).head(m);
+    }
+  }
+  return left;
+}
+
+// In units of the bounds, of which none is below a part of the largest.
+void ContactDynamics::limit() {
+  if (open_ == 0) return;
+  const auto m = static_cast<int>(on_.size());
+  const int left = keep_tangential(m);
+  open_ = 0;
+  if (left == 0) return;
+  double most = 0;
+  for (const Row& row : on_) most = std::max(most, holds(row.contact));
+  if (!(most > 0)) return;
+  limit_.begin(left);
+  for (int i = 0; i < m; ++i) {
+    const Row& row = on_[static_cast<size_t>(i)];
+    const ContactLaw& law = this->law(row.contact);
+    if (law.normal == row.row) continue;
+    if (law.tangential.front() == row.row)
+      limit_.add(row.contact, static_cast<int>(law.tangential.size()));
+    const int at = limit_.rows() - (law.tangential.back() == row.row ? 1 : 2);
+    const double bound = std::max(holds(row.contact), kDependent * most);
+    limit_.u(at) = multipliers_[i] / bound;
+    for (int c = 0; c < left; ++c) limit_.v(at, c) = null_(i, c) / bound;
+  }
+  limit_.solve();
+  for (int i = 0; i < count(); ++i)
+    if (limit_.has(i))
+      tangential_[static_cast<size_t>(i)] =
+          std::max(holds(i), kDependent * most) * limit_.reaction(i);
+}
+
+double ContactDynamics::hold_left(int i) {
+  limit();
+  if (limit_.has(i)) return holds(i) * (1 - limit_.factor());
+  return holds(i) - tangential_[static_cast<size_t>(i)].norm();
+}
+
+bool ContactDynamics::yields_with(int i, int first) {
+  limit();
+  if (limit_.has(i)) return limit_.yields(i);
+  return i == first || hold_left(i) <= kOnRim * holds(i);
+}
+
+// N_i = sum_j w_j N_j: the height sum_j w_j h_j of heights h_j = -l_j/share. w is the least-squares
+// solution in the metric, R M_A R^T w = R M_A N_i^T, and what is left of N_i beside it is
+// round-off.
+std::optional<double> ContactDynamics::height_of_held(const ContactStates& states, int i) {
+  limit();
+  if (!law(i).normal || !(law(i).share > 0)) return {};
+  const Row own = {*law(i).normal, i};
+  on_.clear();
+  for (int j = 0; j < count(); ++j)
+    if (states[static_cast<size_t>(j)].mode != ContactMode::open && law(j).normal)
+      on_.push_back({*law(j).normal, j});
+  const auto m = static_cast<int>(on_.size());
+  if (m < 2 || m + 1 > responses_.cols()) return {};
+  respond_to(own.row, m);
+  auto w = multipliers_.head(m);
+  for (int j = 0; j < m; ++j) {
+    const int row = on_[static_cast<size_t>(j)].row;
+    w[j] = row_times(row, responses_.col(m));
+    respond_to(row, j);
+  }
+  for (int j = 0; j < m; ++j)
+    for (int l = 0; l < m; ++l)
+      k_work_.data()[j + l * m] = row_times(on_[static_cast<size_t>(j)].row, responses_.col(l));
+  pivots_.eliminate(k_map(m), w);
+  row_ = responses_.col(m);
+  for (int j = 0; j < m; ++j) row_ -= w[j] * responses_.col(j);
+  const double rest = row_times(own.row, row_), size = row_times(own.row, responses_.col(m));
+  if (!(std::abs(rest) <= kDependent * size)) return {};
+  double height = 0;
+  for (int j = 0; j < m; ++j) {
+    const int of = on_[static_cast<size_t>(j)].contact;
+    height -= w[j] * normal_reaction(of) / law(of).share;
+  }
+  return height;
 }
 
 void ContactDynamics::give_way_by(double compliance, int m) {

@@ -10,6 +10,11 @@
 namespace hamel {
 namespace {
 
+// A rate of slip that is this part of the sum of its terms is round-off.
+constexpr double kNoSlip = 1e-10;
+// A force that is this part of the largest, or an acceleration, is round-off.
+constexpr double kNoForce = 1e-9;
+
 int direction_count(const ContactLaw& law) { return static_cast<int>(law.tangential.size()); }
 
 // Contacts that were tried with static friction, and slide, into `told`. Are there any?
@@ -139,6 +144,22 @@ bool ContactDynamics::slides_on(ContactState& state, int i, bool told) {
   return slides;
 }
 
+// Has a block of the solution, with rows that depend on others', a slip that is not round-off?
+bool ContactDynamics::slips_at(const ContactBlock& block) const {
+  const auto m = static_cast<Eigen::Index>(on_.size());
+  double slip = 0, size = 0;
+  for (Eigen::Index i = block.first + (block.normal ? 1 : 0); i < block.first + block.size(); ++i) {
+    double gamma = c_[i], sum = std::abs(c_[i]);
+    for (Eigen::Index j = 0; j < m; ++j) {
+      gamma += k_(i, j) * problem().p()[j];
+      sum += std::abs(k_(i, j) * problem().p()[j]);
+    }
+    slip = std::max(slip, std::abs(gamma));
+    size = std::max(size, sum);
+  }
+  return slip > kNoSlip * size;
+}
+
 // The mode of a contact from the solution of its block.
 void ContactDynamics::take_answer(ContactState& state, size_t block) const {
   const ContactBlock& of = blocks_[block];
@@ -148,10 +169,48 @@ void ContactDynamics::take_answer(ContactState& state, size_t block) const {
                : answer == ContactAnswer::sticks && of.tangential > 0 ? ContactMode::rolls
                                                                       : ContactMode::slides;
   if (state.mode != ContactMode::slides || of.tangential == 0) return;
+  if (shared_ && !slips_at(of)) {  // on its rim, where others hold the rest
+    state.mode = ContactMode::rolls;
+    return;
+  }
   Eigen::Vector2d d(0, 0);
   d.head(of.tangential) = -problem().p().segment(of.first + (of.normal ? 1 : 0), of.tangential);
   if (d.norm() > 0) state.direction = d / d.norm();
   state.begins = of.tangential == 2;
+}
+
+// Coulomb's law and (3) of contact i, behind accelerate(), with round-off.
+bool ContactDynamics::lawful(const ContactStates& states, int i, double force, double closed) {
+  const ContactState& state = states[static_cast<size_t>(i)];
+  const double nothing = kNoForce * force;
+  if (state.mode == ContactMode::open) {
+    if (!law(i).normal || !(gap(i) < closed) || gap_rate(i) > 10 * state.no_slip) return true;
+    const auto height = height_of_held(states, i);
+    if (height) return *height * law(i).share >= -nothing;
+    return gap_acceleration(i) >= -kNoForce * acceleration_scale(i);
+  }
+  if (law(i).normal && !(normal_reaction(i) >= -nothing)) return false;
+  if (state.mode == ContactMode::rolls)
+    return law(i).tangential.empty() || hold_left(i) >= -nothing;
+  if (law(i).normal && !(coefficient(i) > 0)) return false;
+  if (!state.begins) return true;
+  const Eigen::Vector2d s = slip_rate(i);
+  const double along = s.dot(state.direction), little = kNoForce * acceleration_scale(i);
+  return along >= -little && (s - along * state.direction).norm() <= little;
+}
+
+bool ContactDynamics::continue_in(ContactStates& states, double closed) {
+  if (!accelerate(states)) return false;
+  for (int i = 0; i < count(); ++i)
+    if (states[static_cast<size_t>(i)].begins)
+      states[static_cast<size_t>(i)].direction = first_direction(i);
+  limit();
+  double force = 0;
+  for (int i = 0; i < count(); ++i)
+    force = std::max({force, std::abs(normal_reaction(i)), tangential_reaction(i).norm()});
+  bool out = true;
+  for (int i = 0; i < count() && out; ++i) out = lawful(states, i, force, closed);
+  return out;
 }
 
 std::string ContactDynamics::decide(ContactStates& states, const std::vector<char>& slides) {

@@ -237,5 +237,39 @@ TEST(FourLegs, ANamedStartStaysOnTheGround) {
   EXPECT_NEAR(run.trajectory.column("w3").front(), 1, 1e-13);
 }
 
+// A push F(t) = 1.2 m g (1 - (t - 1)^2) down at one of four feet takes the load of the one across
+// it, (m g - F)/4, where it is m g, and gives it back; the two beside it bear m g/2 each meanwhile,
+// it F.
+TEST(FourLegs, OneIsLiftedAndBearsAgain) {
+  Mechanism m("table");
+  m.body("top", {.mass = kMass, .at = {0, 0, kHeight}, .box = {0.8, 0.6, 0.05}});
+  m.free("root", "top", {.at = {0, 0, kHeight}});
+  for (const int i : kInOrder)
+    m.point(leg(i), "top",
+            {.at = {i < 2 ? 0.4 : -0.4, i % 2 == 0 ? 0.3 : -0.3, 0}, .friction = kFriction});
+  const auto none = [](const SignalInput&) { return 0.0; };
+  const auto push = [](double t) { return 1.2 * kMass * kGravity * (1 - (t - 1) * (t - 1)); };
+  const auto down = [push](const SignalInput& at) { return -push(at.t); };
+  m.force("push", "top", {.at = {0.4, 0.3, kHeight}, .along = {none, none, down}});
+  const Result r = simulate(m).slip().until(2).run();
+  ASSERT_TRUE(r.status.ok) << r.status.reason;
+  ASSERT_EQ(r.events.size(), 2);
+  EXPECT_EQ(r.events[0].name, "leg4.opens");
+  EXPECT_EQ(r.events[1].name, "leg4.rolls");
+  const double half = std::sqrt(1 - 1 / 1.2);
+  EXPECT_NEAR(r.events[0].time, 1 - half, 1e-9);
+  EXPECT_NEAR(r.events[1].time, 1 + half, 1e-9);
+  for (size_t i = 0; i < r.trajectory.rows(); ++i) {
+    const auto at = [&](const std::string& name) { return r.trajectory.column(name)[i]; };
+    const double force = push(at("t")), weight = kMass * kGravity;
+    const bool lifted = force > weight;
+    EXPECT_EQ(at("leg4.mode"), lifted ? 0 : 1) << at("t");
+    EXPECT_NEAR(at("leg4.reaction3"), lifted ? 0 : (weight - force) / 4, 1e-10);
+    EXPECT_NEAR(at("leg1.reaction3"), lifted ? force : (weight + 3 * force) / 4, 1e-10);
+    EXPECT_NEAR(at("leg2.reaction3"), lifted ? weight / 2 : (weight + force) / 4, 1e-10);
+    EXPECT_NEAR(at("v3"), 0, 1e-14);
+  }
+}
+
 }  // namespace
 }  // namespace hamel

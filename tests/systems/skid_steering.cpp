@@ -2,8 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -102,6 +104,49 @@ TEST(LockedCart, FeetOfEqualLoadsShareAPush) {
       EXPECT_NEAR(last(r, name + ".reaction1"), -1 - couple * sy * y, 1e-12) << name;
       EXPECT_NEAR(last(r, name + ".reaction2"), couple * sx * x, 1e-12) << name;
     }
+}
+
+// Two feet of a bar across, each with the bound B. The push 0.8 B ahead at the first is borne by
+// it; that of t B along the bar by either: in equal parts up to 1.2 B, where the first is on its
+// rim, then by the second, up to 1.6 B, where it is on its own: there both begin to slide, not
+// before.
+TEST(LockedCart, FeetSlideWhereNoneHoldsMore) {
+  const double load = 10, bound = 0.5 * load;
+  for (const bool given : {true, false}) {
+    SCOPED_TRACE(given);
+    Mechanism m("bar");
+    m.body("bar", {.mass = 2 * load / kGravity, .at = {0, 0, 0}, .box = {0.1, 0.8, 0.02}});
+    if (given) m.planar("floor", "bar");
+    else m.free("root", "bar");
+    for (const double y : {0.4, -0.4}) {
+      PointOptions foot{.at = {0, y, 0}, .friction = 0.5};
+      if (given) foot.load = load;
+      m.point(y > 0 ? "first" : "second", "bar", foot);
+    }
+    const auto none = [](const SignalInput&) { return 0.0; };
+    m.force("ahead", "bar",
+            {.at = {0, 0.4, 0},
+             .along = {[bound](const SignalInput&) { return 0.8 * bound; }, none, none},
+             .time_dependent = false});
+    m.force("across", "bar",
+            {.at = {0, 0, 0},
+             .along = {none, [bound](const SignalInput& at) { return at.t * bound; }, none}});
+    const Result r = slipping(m).until(1.7).run();
+    ASSERT_TRUE(r.status.ok) << r.status.reason;
+    EXPECT_EQ(names(r), (std::vector<std::string>{"first.slides", "second.slides"}));
+    EXPECT_NEAR(time_of(r, "first.slides"), 1.6, 1e-9);
+    EXPECT_NEAR(time_of(r, "second.slides"), 1.6, 1e-9);
+    const std::string ahead = ".reaction1", across = ".reaction2";
+    for (size_t i = 0; i < r.trajectory.rows(); ++i) {
+      const auto at = [&](const std::string& name) { return r.trajectory.column(name)[i]; };
+      const double push = at("t") * bound;
+      if (at("t") > 1.6 - 1e-9) continue;
+      const double first = std::min(push / 2, 0.6 * bound);
+      EXPECT_NEAR(at("first" + ahead), -0.8 * bound, 1e-9) << at("t");
+      EXPECT_NEAR(at("first" + across), -first, 1e-9) << at("t");
+      EXPECT_NEAR(at("second" + across), first - push, 1e-9) << at("t");
+    }
+  }
 }
 
 // A cart whose four wheels turn, half track b, half wheelbase a, as many loads N = m g/4: turning

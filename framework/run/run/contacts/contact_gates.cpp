@@ -20,9 +20,8 @@ namespace {
 constexpr double kNoGate = std::numeric_limits<double>::infinity();
 constexpr double kNoTime = std::numeric_limits<double>::quiet_NaN();
 constexpr size_t kParts = 5;
-// A slip of this part of the velocities of the run is none; sigma, and where a slip has grown,
-// (5) of contact_dynamics.hpp.
-constexpr double kSmallSlip = 1e-10, kSigma = 1e-7, kGrown = 1e-6;
+// A slip of this part of the velocities of the run is none; sigma.
+constexpr double kSmallSlip = 1e-10, kSigma = 1e-7;
 // A change of a gate in a step, as a part of it, that needs no second look.
 constexpr double kLittle = 0.1;
 // A gap that turns at less than this part of its largest value grazes.
@@ -43,6 +42,7 @@ void ContactKernel::evaluate_node() {
   gates(now_->time(), at_node_);
   rolled_ = false;
   follow_speeds();
+  find_held();
   // The gates of slips along the directions that they have now: those of the last node may be
   // opposite, so that a slip would seem to have ended already.
   for (int i = 0; i < count(); ++i) {
@@ -50,6 +50,19 @@ void ContactKernel::evaluate_node() {
     if (contact(i).mode != ContactMode::slides || contact(i).begins || !std::isfinite(slip))
       continue;
     slip = dynamics().slip(i).dot(references_[static_cast<size_t>(i)]) - kSigma * followed(i).speed;
+  }
+}
+
+// Open contacts whose heights others hold at 0 (four wheels, of which one bears nothing): their
+// gates are what these heights would be if contacts gave way.
+void ContactKernel::find_held() {
+  for (int i = 0; i < count(); ++i) {
+    followed(i).held = false;
+    if (contact(i).mode != ContactMode::open || !(std::abs(dynamics().gap(i)) < kClosedGap))
+      continue;
+    const std::optional<double> height = dynamics().height_of_held(contacts_->states(), i);
+    followed(i).held = height.has_value();
+    if (height) at_node_[static_cast<size_t>(i)][0] = *height;
   }
 }
 
@@ -63,11 +76,17 @@ void ContactKernel::follow_speeds() {
     const Eigen::Vector2d s = dynamics().slip(i);
     Eigen::Vector2d& reference = references_[static_cast<size_t>(i)];
     const bool slips = s.norm() > 10 * contact(i).no_slip;
+    if (contact(i).begins && contact(i).mode == ContactMode::slides)
+      take_direction(i, dynamics().first_direction(i));
     reference = slips ? Eigen::Vector2d(s / s.norm()) : contact(i).direction;
     if (!slips || contact(i).begins || contact(i).mode != ContactMode::slides) continue;
-    contact(i).direction = reference;
-    (*now_states_)[static_cast<size_t>(i)].direction = reference;
+    take_direction(i, reference);
   }
+}
+
+void ContactKernel::take_direction(int i, const Eigen::Vector2d& direction) {
+  contact(i).direction = direction;
+  (*now_states_)[static_cast<size_t>(i)].direction = direction;
 }
 
 // A contact that slides with a coefficient that is not positive has no motion, or several.
@@ -124,6 +143,10 @@ void ContactKernel::gates(double t, Gates& out, bool near) {
     const double opened = followed(i).opened;
     if (mode == ContactMode::open) {
       if (!law.normal) continue;
+      if (followed(i).held) {
+        first = dynamics().height_of_held(contacts_->states(), i).value_or(kNoGate);
+        continue;
+      }
       first = dynamics().gap(i);
       followed(i).height = std::max(followed(i).height, first);
       if (t == opened) first = std::max(dynamics().gap_rate(i), 1e-300);
@@ -132,11 +155,9 @@ void ContactKernel::gates(double t, Gates& out, bool near) {
     }
     if (law.normal) first = dynamics().normal_reaction(i);
     if (law.tangential.empty()) continue;
-    const double held = law.normal ? dynamics().normal_reaction(i) : law.load;
-    if (mode == ContactMode::rolls)
-      second = law.holding() * held - dynamics().tangential_reaction(i).norm();
+    if (mode == ContactMode::rolls) second = dynamics().hold_left(i);
     else if (contact(i).begins) {
-      second = kGrown * followed(i).speed - dynamics().slip(i).norm();
+      second = kGrown * contact(i).ease - dynamics().slip(i).norm();
       third = dynamics().slip(i).dot(contact(i).direction) + kSigma * followed(i).speed;
     } else if (law.friction > 0)
       second =
@@ -146,7 +167,7 @@ void ContactKernel::gates(double t, Gates& out, bool near) {
 
 ContactKernel::Switch ContactKernel::switch_of(int i, size_t gate) const {
   const ContactMode mode = contact(i).mode;
-  if (mode == ContactMode::open) return Switch::strikes;
+  if (mode == ContactMode::open) return followed(i).held ? Switch::bears : Switch::strikes;
   if (gate == 0) return Switch::opens;
   if (mode == ContactMode::rolls) return Switch::slides;
   return contact(i).begins && gate == 1 ? Switch::grows : Switch::stops;
@@ -190,7 +211,7 @@ double ContactKernel::locate(int contact, size_t which, ValueAt before, ValueAt 
 
 // Notes a contact that comes this near and does not strike, once.
 void ContactKernel::graze(int i, double t) {
-  if (contact(i).mode != ContactMode::open) return;
+  if (contact(i).mode != ContactMode::open || followed(i).held) return;
   gates(t, one_);
   const double gap = dynamics().gap(i);
   const std::string said = fmt::format("grazing: contact '{}'", dynamics().law(i).name);
@@ -207,7 +228,8 @@ void ContactKernel::graze(int i, double t) {
 // Is a dip behind an opening the round-off of a gap that begins with its third derivative, as of a
 // ball that leaves a dome?
 bool ContactKernel::leaves(int i, double opened, double dip) {
-  if (contact(i).mode != ContactMode::open || followed(i).opened != opened) return false;
+  if (contact(i).mode != ContactMode::open || followed(i).held || followed(i).opened != opened)
+    return false;
   gates(dip, one_);
   return dynamics().gap(i) > -kGrazes * followed(i).height;
 }

@@ -17,9 +17,8 @@ namespace {
 constexpr double kNoRise = 1e-18;
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-// A gap of this size, m, is closed at a start; a slip of this size, relative to what the energy
-// allows, is none.
-constexpr double kClosedGap = 1e-9, kNoSlip = 1e-10;
+// At a start a slip of this size, relative to what the energy allows, is none.
+constexpr double kNoSlip = 1e-10;
 
 }  // namespace
 

@@ -61,7 +61,11 @@ class ContactKernel final : public KernelOfContacts {
   bool motion_within(double t, Snapshot& out) override;
 
  private:
-  enum class Switch { strikes, opens, slides, stops, grows };
+  // A gap of this size, m, is closed at a start, or where other contacts hold it.
+  static constexpr double kClosedGap = 1e-9;
+  // A slip of this many eps of (5) has grown.
+  static constexpr double kGrown = 3;
+  enum class Switch { strikes, bears, opens, slides, stops, grows };
   // Gates of a contact; one that is infinite is none.
   using Gates = std::vector<std::array<double, 3>>;
   struct Found {
@@ -82,6 +86,9 @@ class ContactKernel final : public KernelOfContacts {
   void catch_up();
   void evaluate(const Snapshot& state);
   void follow_speeds();
+  void take_direction(int i, const Eigen::Vector2d& direction);
+  void find_held();
+  void close_held();
   Status fail(const std::string& reason) const;
   Status take_again(double from, double end);
   std::string why_no_node();
@@ -110,8 +117,10 @@ class ContactKernel final : public KernelOfContacts {
   void end_chatter(int i, double ratio);
   std::string stop_slip(int i);
   std::string decide(const std::vector<char>& slides);
+  std::string go_on(const std::vector<char>& slides);
   std::vector<char> at_rims(int first);
   void grow(int first);
+  void choose_ease(const ContactStates& before);
   void take_up(double step);
   std::shared_ptr<const Mechanics> mechanics_of(
       const std::shared_ptr<const ContactStates>& states) const;

@@ -17,12 +17,12 @@ constexpr long kMostSwitches = 1000;
 constexpr double kTogether = 1e-9;
 // A slip above this many sigma V has turned, and not stopped.
 constexpr double kSlow = 1e-6;
-// Reactions this near to the rims of their cones, relative to these, are on them at once.
-constexpr double kOnRim = 1e-9;
 // A rate behind an impact that is this part of the speeds of the contact is round-off of them.
 constexpr double kNoRate = 1e-14;
 // A slip that is this part of one that has grown has grown too.
 constexpr double kGrownToo = 0.5;
+// eps of (5) of contact_dynamics.hpp beside the slip at which it would make the error of a step.
+constexpr double kEase = 1;
 
 }  // namespace
 
@@ -45,14 +45,19 @@ std::string ContactKernel::apply(const Found& found) {
   const int i = found.contact;
   switch (found.what) {
     case Switch::strikes: why = strike_all(i); break;
+    case Switch::bears:
+      contact(i).mode = dynamics().slip(i).norm() > 10 * contact(i).no_slip ? ContactMode::slides
+                                                                            : ContactMode::rolls;
+      why = go_on({});
+      break;
     case Switch::opens:
       contact(i).mode = ContactMode::open;
       followed(i).opened = time_;
-      why = decide({});
+      why = go_on({});
       break;
     case Switch::slides: {
       dynamics().accelerate(before);
-      why = decide(at_rims(i));
+      why = go_on(at_rims(i));
       break;
     }
     case Switch::grows: grow(i); break;
@@ -82,13 +87,28 @@ std::string ContactKernel::apply(const Found& found) {
 
 // The slip of contact `first`, and of others that began with it, has grown.
 void ContactKernel::grow(int first) {
-  const double slip = dynamics().slip(first).norm();
   for (int i = 0; i < count(); ++i) {
     ContactState& state = contact(i);
     const Eigen::Vector2d s = dynamics().slip(i);
-    if (i != first && !(state.begins && s.norm() > kGrownToo * slip)) continue;
+    if (i != first && !(state.begins && s.norm() > kGrownToo * kGrown * state.ease)) continue;
     state.begins = false;
     if (s.norm() > 0) state.direction = s / s.norm();
+  }
+}
+
+// eps^2 d'/a is a part of what a step may be off, for directions d that turn once in the run.
+void ContactKernel::choose_ease(const ContactStates& before) {
+  bool accelerated = false;
+  for (int i = 0; i < count(); ++i) {
+    ContactState& state = contact(i);
+    if (!state.begins || state.mode != ContactMode::slides) continue;
+    const ContactState& was = before[static_cast<size_t>(i)];
+    if (was.begins && was.mode == ContactMode::slides) continue;
+    state.ease = 0;
+    if (!std::exchange(accelerated, true)) dynamics().accelerate(contacts_->states());
+    const double left = std::abs(limit_ - time_), speed = followed(i).speed;
+    const double way = std::isfinite(left) ? dynamics().friction_acceleration(i) * left : speed;
+    state.ease = kEase * std::sqrt(setup_.errors.at(speed) * way);
   }
 }
 
@@ -98,10 +118,8 @@ std::vector<char> ContactKernel::at_rims(int first) {
   std::vector<char> out(static_cast<size_t>(count()), 0);
   for (int i = 0; i < count(); ++i) {
     if (contact(i).mode != ContactMode::rolls || dynamics().law(i).tangential.empty()) continue;
-    const ContactLaw& law = dynamics().law(i);
+    if (!dynamics().yields_with(i, first)) continue;
     const Eigen::Vector2d l = dynamics().tangential_reaction(i);
-    const double most = law.holding() * (law.normal ? dynamics().normal_reaction(i) : law.load);
-    if (i != first && !(most - l.norm() <= kOnRim * most)) continue;
     out[static_cast<size_t>(i)] = 1;
     if (!(l.norm() > 0)) continue;
     contact(i).direction = -l / l.norm();
@@ -112,19 +130,53 @@ std::vector<char> ContactKernel::at_rims(int first) {
 
 // Modes of the closed contacts at the state, which dynamics() has.
 std::string ContactKernel::decide(const std::vector<char>& slides) {
+  close_held();
   const ContactStates before = contacts_->states();
   for (ContactState& state : contacts_->states())
     if (state.mode != ContactMode::slides) state.begins = false;
   std::string why = dynamics().decide(contacts_->states(), slides);
-  for (int i = 0; i < count(); ++i)
-    if (contact(i).mode == ContactMode::open &&
-        before[static_cast<size_t>(i)].mode != ContactMode::open)
+  for (int i = 0; i < count(); ++i) {
+    const ContactState& was = before[static_cast<size_t>(i)];
+    if (contact(i).mode == ContactMode::open && was.mode != ContactMode::open)
       followed(i).opened = time_;
+  }
+  if (why.empty()) choose_ease(before);
   return why;
+}
+
+// Behind a switch of several contacts: in the modes that it leaves, where these are lawful, else in
+// those of the contact problem, which is exact of one alone.
+std::string ContactKernel::go_on(const std::vector<char>& slides) {
+  const ContactStates before = contacts_->states();
+  const auto closed = std::ranges::count_if(
+      before, [](const ContactState& one) { return one.mode != ContactMode::open; });
+  if (closed > 1) {
+    ContactStates next = before;
+    for (size_t i = 0; i < next.size(); ++i)
+      if (i < slides.size() && slides[i] != 0) {
+        next[i].mode = ContactMode::slides;
+        next[i].begins = dynamics().law(static_cast<int>(i)).tangential.size() == 2;
+        next[i].ease = 0;
+      }
+    if (dynamics().continue_in(next, kClosedGap)) {
+      contacts_->states() = next;
+      choose_ease(before);
+      return "";
+    }
+  }
+  return decide(slides);
+}
+
+// Contacts at a height that others hold may bear again, whatever the switch is.
+void ContactKernel::close_held() {
+  for (int i = 0; i < count(); ++i)
+    if (std::exchange(followed(i).held, false) && contact(i).mode == ContactMode::open)
+      contact(i).mode = ContactMode::rolls;
 }
 
 // The impact of contact `first`, and of others whose gaps close with it.
 std::string ContactKernel::strike_all(int first) {
+  close_held();
   std::vector<char> strikes(static_cast<size_t>(count()), 0);
   std::vector<double> speeds(strikes.size(), 0);
   for (int i = 0; i < count(); ++i) {
@@ -202,7 +254,8 @@ std::string ContactKernel::stop_slip(int i) {
   }
   contact(i).begins = false;
   if (dynamics().stop(contacts_->states(), i, xi_)) dynamics().evaluate(time_, g_.data(), xi_);
-  return decide({});
+  contact(i).mode = ContactMode::rolls;
+  return go_on({});
 }
 
 // The first step of a flight takes at most half of it.
@@ -210,7 +263,9 @@ double ContactKernel::first_step(double step) {
   dynamics().accelerate(contacts_->states());
   double out = step;
   for (int i = 0; i < count(); ++i) {
-    if (contact(i).mode != ContactMode::open || followed(i).opened != time_) continue;
+    if (contact(i).mode != ContactMode::open || followed(i).opened != time_ ||
+        dynamics().height_of_held(contacts_->states(), i))
+      continue;
     const double rate = dynamics().gap_rate(i), a = -dynamics().gap_acceleration(i);
     if (rate > 0 && a > 0) out = std::min(out, rate / a);
   }
