@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include <hamel/framework/mechanics/system_model.hpp>
@@ -15,8 +16,9 @@ namespace check {
 namespace {
 
 constexpr double kOfRun = 1e-9;
-constexpr double kNoDirection = 1e-6;  // a slip whose direction is round-off, of the speed
-constexpr double kOfBalance = 1e-7;    // the quadrature of work adds its own errors
+// The part of the velocity that a contact's force alone would make, below which is round-off of rest.
+constexpr double kOfForce = 1e-6;
+constexpr double kOfBalance = 1e-7;  // the quadrature of work adds its own errors
 
 // Slip, gap and reactions of one contact at a node.
 struct ContactNode {
@@ -44,6 +46,22 @@ class ContactNodes {
                                     : system_.reactions[static_cast<size_t>(row)]));
     for (const ContactLaw& law : system_.contact_laws)
       modes_.push_back(result.trajectory.index(law.name + ".mode"));
+  }
+
+  // How fast a force of 1 N at a contact can change its velocities, at the first row.
+  double reach(size_t contact) {
+    evaluate(0);
+    Eigen::MatrixXd inertia(mechanics_.dim(), mechanics_.dim());
+    mechanics_.inertia(g_.data(), inertia);
+    const Eigen::LDLT<Eigen::MatrixXd> factors(inertia);
+    const ContactLaw& law = system_.contact_laws[contact];
+    double out = 0;
+    const auto add = [&](int row) {
+      out = std::max(out, rows_.row(row).dot(factors.solve(rows_.row(row).transpose())));
+    };
+    for (const int row : law.tangential) add(row);
+    if (law.normal) add(*law.normal);
+    return out;
   }
 
   // visit(contact, node) of each contact at each row.
@@ -124,8 +142,8 @@ struct ContactViolations {
     if (at.mode == static_cast<int>(ContactMode::rolls)) {
       slips(slip / size.way);
       beyond_cone((at.friction.norm() - law.holding() * held) / size.force);
-    } else if (slip > kNoDirection * size.way) {
-      off_rim((at.friction + mu * held / slip * at.slip).norm() / size.force);
+    } else {  // by |s|, so that a slip without a direction has none
+      off_rim((slip * at.friction + mu * held * at.slip).norm() / (size.force * size.way));
     }
   }
   void report(LawReport& to) const {
@@ -170,11 +188,13 @@ LawReport check_contacts(const Simulation& simulation) {
     force = std::max(force, sizes[c].force);
     way = std::max(way, sizes[c].way);
   });
-  for (ContactSizes& size : sizes) {
-    if (!(size.way > 0)) size.way = way > 0 ? way : 1;
-    if (!(size.force > 0)) size.force = force > 0 ? force : 1;
-  }
   const double time = std::abs(result.last.time - result.config.from);
+  for (size_t c = 0; c < sizes.size(); ++c) {
+    ContactSizes& size = sizes[c];
+    if (!(size.force > 0)) size.force = force > 0 ? force : 1;
+    size.way = std::max(size.way, kOfForce * size.force * nodes.reach(c) * time);
+    if (!(size.way > 0)) size.way = way > 0 ? way : 1;
+  }
   ContactViolations all;
   nodes.each([&](size_t c, const ContactNode& at) { all.take(laws[c], at, sizes[c], time); });
   LawReport out;
