@@ -90,6 +90,8 @@ class ContactDynamics {
   double gap(int i) const;
   double gap_rate(int i) const;
   Eigen::Vector2d slip(int i) const;
+  /// Is the slip of contact i more than round-off?
+  bool slips(const ContactState& state, int i) const { return slip(i).norm() > 10 * state.no_slip; }
   /// The largest velocity that the kinetic energy could be that of at a contact.
   double speed_scale(int i) { return scale_at(i, xi_); }
   /// The same of an acceleration, behind accelerate(): of that without the contacts' reactions.

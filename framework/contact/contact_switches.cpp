@@ -134,7 +134,7 @@ bool ContactDynamics::slides_on(ContactState& state, int i, bool told) {
     return false;
   }
   const Eigen::Vector2d s = slip(i);
-  const bool slips = s.norm() > 10 * state.no_slip;
+  const bool slips = this->slips(state, i);
   if (state.begins && state.mode != ContactMode::slides) state.begins = false;
   if (slips && !state.begins) state.direction = s / s.norm();
   const bool slides = slips || state.begins || told || law(i).friction == 0;
@@ -193,7 +193,7 @@ bool ContactDynamics::lawful(const ContactStates& states, int i, double force, d
   if (state.mode == ContactMode::rolls)
     return law(i).tangential.empty() || hold_left(i) >= -nothing;
   if (law(i).normal && !(coefficient(i) > 0)) return false;
-  if (!state.begins) return true;
+  if (!state.begins) return slips(state, i) || law(i).friction == 0;
   const Eigen::Vector2d s = slip_rate(i);
   const double along = s.dot(state.direction), little = kNoForce * acceleration_scale(i);
   return along >= -little && (s - along * state.direction).norm() <= little;
@@ -277,7 +277,7 @@ void ContactDynamics::rest(const ContactStates& states, int i, Eigen::VectorXd& 
   const ContactLaw& law = this->law(i);
   const ContactState& state = states[static_cast<size_t>(i)];
   const Eigen::Vector2d s = slip(i);
-  if (!(s.norm() > 10 * state.no_slip)) {
+  if (!slips(state, i)) {
     std::vector<int> rows = {*law.normal};
     rows.insert(rows.end(), law.tangential.begin(), law.tangential.end());
     project(rows, xi);

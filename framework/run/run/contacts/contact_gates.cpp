@@ -49,7 +49,7 @@ void ContactKernel::evaluate_node() {
     double& slip = at_node_[static_cast<size_t>(i)][1];
     if (contact(i).mode != ContactMode::slides || contact(i).begins || !std::isfinite(slip))
       continue;
-    slip = dynamics().slip(i).dot(references_[static_cast<size_t>(i)]) - kSigma * followed(i).speed;
+    slip = slip_left(i);
   }
 }
 
@@ -66,6 +66,12 @@ void ContactKernel::find_held() {
   }
 }
 
+// A slip that is small already, behind the end of another, ends at less.
+double ContactKernel::slip_left(int i) {
+  const auto& [reference, least] = slips_[static_cast<size_t>(i)];
+  return dynamics().slip(i).dot(reference) - least;
+}
+
 void ContactKernel::follow_speeds() {
   for (int i = 0; i < count(); ++i) {
     FollowedContact& follows = followed(i);
@@ -74,8 +80,9 @@ void ContactKernel::follow_speeds() {
       follows.speed = dynamics().acceleration_scale(i) * std::abs(now_->next_step());
     contact(i).no_slip = kSmallSlip * follows.speed;
     const Eigen::Vector2d s = dynamics().slip(i);
-    Eigen::Vector2d& reference = references_[static_cast<size_t>(i)];
-    const bool slips = s.norm() > 10 * contact(i).no_slip;
+    auto& [reference, least] = slips_[static_cast<size_t>(i)];
+    const bool slips = dynamics().slips(contact(i), i);
+    least = std::min(kSigma * follows.speed, s.norm() / 2);
     if (contact(i).begins && contact(i).mode == ContactMode::slides)
       take_direction(i, dynamics().first_direction(i));
     reference = slips ? Eigen::Vector2d(s / s.norm()) : contact(i).direction;
@@ -159,9 +166,7 @@ void ContactKernel::gates(double t, Gates& out, bool near) {
     else if (contact(i).begins) {
       second = kGrown * contact(i).ease - dynamics().slip(i).norm();
       third = dynamics().slip(i).dot(contact(i).direction) + kSigma * followed(i).speed;
-    } else if (law.friction > 0)
-      second =
-          dynamics().slip(i).dot(references_[static_cast<size_t>(i)]) - kSigma * followed(i).speed;
+    } else if (law.friction > 0) second = slip_left(i);
   }
 }
 
@@ -179,7 +184,7 @@ std::optional<ContactKernel::Found> ContactKernel::stop_found() {
   const Gates& here = one_;
   for (int i = 0; i < count(); ++i) {
     if (contact(i).mode != ContactMode::slides || contact(i).begins) continue;
-    if (here[static_cast<size_t>(i)][1] <= kSigma * followed(i).speed)
+    if (here[static_cast<size_t>(i)][1] <= slips_.at(static_cast<size_t>(i)).least)
       return Found{now_->time(), i, Switch::stops};
   }
   return {};

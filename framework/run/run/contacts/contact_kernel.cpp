@@ -25,7 +25,7 @@ constexpr double kNoSlip = 1e-10;
 ContactKernel::ContactKernel(SmoothKernels smooth, KernelSetup setup,
                              std::shared_ptr<RunContacts> contacts)
     : KernelOfContacts(std::move(smooth), std::move(setup), std::move(contacts)),
-      references_(static_cast<size_t>(count()), Eigen::Vector2d(1, 0)),
+      slips_(static_cast<size_t>(count())),
       looks_(6),
       move_(g_) {
   ContactKernel::begin();

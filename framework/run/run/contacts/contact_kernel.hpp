@@ -7,9 +7,10 @@
 //            mu l_n - |l_t|               slides, along -l_t
 //   sliding  l_n                          opens
 //            s . d - sigma V              ceases to slip: d the direction of s at the last node,
-//                                         V a scale of velocities, sigma = 1e-7; the slip that is
-//                                         left, and the time that it takes to end, are taken to
-//                                         first order, with an error of order sigma^2.
+//                                         V a scale of velocities, sigma = 1e-7, and half of |s|
+//                                         there at most; the slip that is left, and the time that
+//                                         it takes to end, are taken to first order, with an error
+//                                         of order sigma^2.
 //   begins   1e-6 V - |s|                 slides (its friction has the direction of the slip), no
 //                                         event
 //            s . d + sigma V              has not begun
@@ -100,6 +101,7 @@ class ContactKernel final : public KernelOfContacts {
   void rolling_gates(double t, Gates& out, bool near);
   void look_at(double t, bool near);
   std::optional<Found> stop_found();
+  double slip_left(int i);
   double gate(int contact, size_t which, double t);
   double locate(int contact, size_t which, ValueAt before, ValueAt after);
   void graze(int i, double t);
@@ -141,8 +143,13 @@ class ContactKernel final : public KernelOfContacts {
   double usual_step_ = 0;  // that a step would have been followed by, had it not been taken again
   double stop_ = std::numeric_limits<double>::infinity();  // of a slip, where a step ends
   long steps_ = 0;
-  std::string failure_;                      // of a start or a switch
-  std::vector<Eigen::Vector2d> references_;  // directions of slip at the last node
+  std::string failure_;  // of a start or a switch
+  // A slip at the last node: its direction, and the size at which it has ended.
+  struct Slip {
+    Eigen::Vector2d reference = {1, 0};
+    double least = 0;
+  };
+  std::vector<Slip> slips_;
   Gates at_node_, middle_, end_, one_;
   Gates before_node_;         // of the node before, where all contacts have rolled since
   std::vector<Gates> looks_;  // at the parts of a step

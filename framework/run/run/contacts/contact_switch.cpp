@@ -46,8 +46,7 @@ std::string ContactKernel::apply(const Found& found) {
   switch (found.what) {
     case Switch::strikes: why = strike_all(i); break;
     case Switch::bears:
-      contact(i).mode = dynamics().slip(i).norm() > 10 * contact(i).no_slip ? ContactMode::slides
-                                                                            : ContactMode::rolls;
+      contact(i).mode = dynamics().slips(contact(i), i) ? ContactMode::slides : ContactMode::rolls;
       why = go_on({});
       break;
     case Switch::opens:
@@ -152,12 +151,17 @@ std::string ContactKernel::go_on(const std::vector<char>& slides) {
       before, [](const ContactState& one) { return one.mode != ContactMode::open; });
   if (closed > 1) {
     ContactStates next = before;
-    for (size_t i = 0; i < next.size(); ++i)
+    for (size_t i = 0; i < next.size(); ++i) {
+      const auto at = static_cast<int>(i);
       if (i < slides.size() && slides[i] != 0) {
         next[i].mode = ContactMode::slides;
-        next[i].begins = dynamics().law(static_cast<int>(i)).tangential.size() == 2;
+        next[i].begins = dynamics().law(at).tangential.size() == 2;
         next[i].ease = 0;
+      } else if (next[i].mode == ContactMode::slides && !next[i].begins &&
+                 !dynamics().slips(next[i], at)) {
+        next[i].mode = ContactMode::rolls;  // it has stopped with another
       }
+    }
     if (dynamics().continue_in(next, kClosedGap)) {
       contacts_->states() = next;
       choose_ease(before);
