@@ -11,6 +11,10 @@ namespace hamel {
 namespace {
 
 constexpr int kSweeps = 4000, kLook = 20;
+constexpr int kNewton = 20, kTurns = 60, kAllTurn = 20;
+// Residuals of equations that are independent, and of ones of which some repeat others: where a
+// pivot is round-off what it would solve is left.
+constexpr double kSolved = 1e-13, kRepeats = 1e-10;
 constexpr size_t kTurned = 8;
 
 double cross_of(double a0, double a1, double b0, double b1) { return a0 * b1 - a1 * b0; }
@@ -22,12 +26,14 @@ ContactProblem::ContactProblem(int unknowns, int contacts)
       before_(unknowns),
       residual_(unknowns),
       kept_(unknowns),
+      start_(unknowns),
       jacobian_(unknowns, unknowns),
       null_(unknowns, unknowns),
       squares_(unknowns * unknowns),
       pivots_(unknowns),
       convex_(unknowns) {
   answers_.reserve(static_cast<size_t>(contacts));
+  told_.reserve(static_cast<size_t>(contacts));
   doubtful_.reserve(static_cast<size_t>(contacts));
 }
 
@@ -114,6 +120,7 @@ bool ContactProblem::find_correction() {
     r[i] /= row;
   }
   const int rank = pivots_.eliminate(j, r);
+  repeats_ = rank < size_;
   before_.head(size_) = r;
   if (rank < size_) shorten(rank);
   return before_.head(size_).allFinite();
@@ -135,7 +142,7 @@ void ContactProblem::shorten(int rank) {
 bool ContactProblem::improve(const Matrix& g, const Vector& c, const Blocks& blocks) {
   kept_.head(size_) = p_.head(size_);
   double best = contact_residual(g, c, blocks, p_.head(size_));
-  for (int k = 0; k < 20 && best > 1e-15; ++k) {
+  for (int k = 0; k < kNewton && best > 1e-15; ++k) {
     equations(g, c, blocks);
     if (!find_correction()) break;
     p_.head(size_) -= before_.head(size_);
@@ -148,7 +155,57 @@ bool ContactProblem::improve(const Matrix& g, const Vector& c, const Blocks& blo
     kept_.head(size_) = p_.head(size_);
   }
   p_.head(size_) = kept_.head(size_);
-  return best <= 1e-13;
+  return best <= (repeats_ ? kRepeats : kSolved);
+}
+
+// The active set by its own equations: their solution tells, by what P - gamma/G would be, which
+// contacts do otherwise, and these turn, all of them or, where that goes round, the first one.
+bool ContactProblem::settle(const Matrix& g, const Vector& c, const Blocks& blocks) {
+  start_.head(size_) = p_.head(size_);
+  told_ = answers_;
+  for (int turn = 0; turn < kTurns; ++turn) {
+    if (improve(g, c, blocks)) return true;
+    for (int k = 0; k < kNewton; ++k) {
+      equations(g, c, blocks);
+      if (!find_correction()) break;
+      p_.head(size_) -= before_.head(size_);
+      if (before_.head(size_).norm() <= 1e-14 * p_.head(size_).norm()) break;
+    }
+    if (!p_.head(size_).allFinite() || !turn_contacts(g, c, blocks, turn < kAllTurn)) break;
+  }
+  p_.head(size_) = start_.head(size_);
+  answers_ = told_;
+  return false;
+}
+
+// Do any?
+bool ContactProblem::turn_contacts(const Matrix& g, const Vector& c, const Blocks& blocks,
+                                   bool all) {
+  residual_.head(size_) = c;
+  residual_.head(size_).noalias() += g.lazyProduct(p_.head(size_));
+  bool out = false;
+  for (size_t k = 0; k < blocks.size() && (all || !out); ++k) {
+    const ContactBlock& block = blocks[k];
+    const int first = block.first, t = first + (block.normal ? 1 : 0);
+    const auto without = [&](int i) {
+      return g(i, i) > 0 ? p_[i] - residual_[i] / g(i, i) : p_[i];
+    };
+    ContactAnswer next = ContactAnswer::sticks;
+    const double pn = block.normal ? without(first) : 0;
+    const double most = block.normal ? block.friction * pn : block.bound;
+    Eigen::Vector2d pt(0, 0);
+    for (int i = 0; i < block.tangential; ++i) pt[i] = without(t + i);
+    const double length = pt.norm();
+    if (block.normal && !(pn > 0)) next = ContactAnswer::opens;
+    else if (block.tangential > 0 && length > most) next = ContactAnswer::slides;
+    if (next == answers_[k]) continue;
+    out = true;
+    answers_[k] = next;
+    if (block.normal) p_[first] = std::max(0., pn);
+    const double part = next == ContactAnswer::opens ? 0 : length > most ? most / length : 1;
+    p_.segment(t, block.tangential) = part * pt.head(block.tangential);
+  }
+  return out;
 }
 
 // Along the path of the convex problem until the equations of what it tells have a solution of (1)
@@ -220,7 +277,7 @@ ContactProblem::Outcome ContactProblem::solve_next(const Matrix& g, const Vector
 }
 
 bool ContactProblem::refine(const Matrix& g, const Vector& c, const Blocks& blocks) {
-  return size_ == c.size() && answers_.size() == blocks.size() && improve(g, c, blocks);
+  return size_ == c.size() && answers_.size() == blocks.size() && settle(g, c, blocks);
 }
 
 // Sweeps until the equations of what the contacts then do have a solution, after so many for the
@@ -235,8 +292,7 @@ ContactProblem::Outcome ContactProblem::sweeps(const Matrix& g, const Vector& c,
     for (const ContactBlock& block : blocks)
       if (!block.normal) most = std::max(most, block.bound);
     const bool settled = moved <= 1e-15 * most;
-    if ((settled || k == first_look || k % kLook == 0) && improve(g, c, blocks))
-      return Outcome::one;
+    if ((settled || k == first_look || k % kLook == 0) && settle(g, c, blocks)) return Outcome::one;
     if (settled) break;
   }
   return Outcome::none;

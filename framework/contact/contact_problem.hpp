@@ -79,16 +79,18 @@ class ContactProblem {
   void look_at_block(const Matrix& g, const Vector& c, const ContactBlock& block);
   void equations(const Matrix& g, const Vector& c, const Blocks& blocks);
   bool improve(const Matrix& g, const Vector& c, const Blocks& blocks);
+  bool settle(const Matrix& g, const Vector& c, const Blocks& blocks);
+  bool turn_contacts(const Matrix& g, const Vector& c, const Blocks& blocks, bool all);
   bool find_correction();
   void shorten(int rank);
   Outcome sweeps(const Matrix& g, const Vector& c, const Blocks& blocks, int first_look);
   bool turn_some(const Matrix& g, const Vector& c, const Blocks& blocks);
   bool minimise(const Matrix& g, const Vector& c, const Blocks& blocks);
 
-  Eigen::VectorXd p_, before_, residual_, kept_;
+  Eigen::VectorXd p_, before_, residual_, kept_, start_;
   Eigen::MatrixXd jacobian_, null_;
   Eigen::VectorXd squares_;
-  std::vector<ContactAnswer> answers_;
+  std::vector<ContactAnswer> answers_, told_;
   std::vector<size_t> doubtful_;
   Pivots pivots_;
   Eigen::Matrix3d block_g_;
@@ -96,6 +98,7 @@ class ContactProblem {
   ContactSolutions solutions_;
   ConvexContacts convex_;
   int size_ = 0;
+  bool repeats_ = false;  // equations of the active set do
 };
 
 /// The largest violation of (1), relative to the sizes of gamma and P.

@@ -193,13 +193,15 @@ std::optional<double> ContactDynamics::height_of_held(const ContactStates& state
 void ContactDynamics::give_way_by(double compliance, int m) {
   const double size = right_.col(0).head(m).maxCoeff();
   for (int i = 0; i < m; ++i) {
-    const ContactLaw& law = this->law(on_[static_cast<size_t>(i)].contact);
-    if (law.normal) k_(i, i) = right_(i, 0) + compliance * size / law.share;
+    const Row& row = on_[static_cast<size_t>(i)];
+    const ContactLaw& law = this->law(row.contact);
+    if (law.normal == row.row) k_(i, i) = right_(i, 0) + compliance * size / law.share;
   }
 }
 
-// Contacts that give way, where rows depend on each other, ever less; what the last do rigid ones
-// do, whose impulses are the nearest to theirs.
+// Contacts whose heights give way, where rows depend on each other, ever less; what the last do
+// rigid ones do, whose impulses are the nearest to theirs. Across nothing gives way: what holds
+// together is not to creep (limit_load.hpp).
 ContactProblem::Outcome ContactDynamics::give_way(int m, bool near) {
   const auto g = k_.topLeftCorner(m, m);
   const auto c = c_.head(m);
