@@ -12,9 +12,10 @@ namespace {
 
 constexpr int kSweeps = 4000, kLook = 20;
 constexpr int kNewton = 20, kTurns = 60, kAllTurn = 20;
-// Residuals of equations that are independent, and of ones of which some repeat others: where a
-// pivot is round-off what it would solve is left.
-constexpr double kSolved = 1e-13, kRepeats = 1e-10;
+// Residuals of what is solved: of equations that repeat others what these leave has no solution,
+// and is round-off, or what secants of a step (nonsmooth_press.cpp) have still to find.
+constexpr double kSolved = 1e-13, kMostLeft = 1e-7,
+                 kSize = 10;  // kSize: of rows in units of one term
 constexpr size_t kTurned = 8;
 
 double cross_of(double a0, double a1, double b0, double b1) { return a0 * b1 - a1 * b0; }
@@ -120,7 +121,8 @@ bool ContactProblem::find_correction() {
     r[i] /= row;
   }
   const int rank = pivots_.eliminate(j, r);
-  repeats_ = rank < size_;
+  const double most = p_.head(size_).lpNorm<Eigen::Infinity>();
+  left_ = rank < size_ && most > 0 ? kSize * pivots_.left() / most : 0;
   before_.head(size_) = r;
   if (rank < size_) shorten(rank);
   return before_.head(size_).allFinite();
@@ -141,6 +143,7 @@ void ContactProblem::shorten(int rank) {
 // Newton on the equations of the active set; the better of before and after stays.
 bool ContactProblem::improve(const Matrix& g, const Vector& c, const Blocks& blocks) {
   kept_.head(size_) = p_.head(size_);
+  left_ = 0;
   double best = contact_residual(g, c, blocks, p_.head(size_));
   for (int k = 0; k < kNewton && best > 1e-15; ++k) {
     equations(g, c, blocks);
@@ -155,7 +158,7 @@ bool ContactProblem::improve(const Matrix& g, const Vector& c, const Blocks& blo
     kept_.head(size_) = p_.head(size_);
   }
   p_.head(size_) = kept_.head(size_);
-  return best <= (repeats_ ? kRepeats : kSolved);
+  return best <= kSolved + std::min(left_, kMostLeft);
 }
 
 // The active set by its own equations: their solution tells, by what P - gamma/G would be, which

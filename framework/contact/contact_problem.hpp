@@ -98,7 +98,7 @@ class ContactProblem {
   ContactSolutions solutions_;
   ConvexContacts convex_;
   int size_ = 0;
-  bool repeats_ = false;  // equations of the active set do
+  double left_ = 0;  // of the equations of the active set, which no P solves, beside their terms
 };
 
 /// The largest violation of (1), relative to the sizes of gamma and P.

@@ -31,6 +31,7 @@ int Pivots::eliminate(Matrix k, Matrix b) {
       b.row(i) -= factor * b.row(rank);
     }
   }
+  left_ = rank < m && b.cols() > 0 ? b.bottomRows(m - rank).cwiseAbs().maxCoeff() : 0;
   for (Eigen::Index c = 0; c < b.cols(); ++c) {
     work_.setZero();
     for (int i = rank - 1; i >= 0; --i) {
