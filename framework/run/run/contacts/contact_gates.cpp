@@ -66,6 +66,11 @@ void ContactKernel::find_held() {
   }
 }
 
+// Above what it would end at, too.
+double ContactKernel::grown(int i) const {
+  return std::max(kGrown * contact(i).ease, 10 * kSigma * followed(i).speed);
+}
+
 // A slip that is small already, behind the end of another, ends at less.
 double ContactKernel::slip_left(int i) {
   const auto& [reference, least] = slips_[static_cast<size_t>(i)];
@@ -82,7 +87,8 @@ void ContactKernel::follow_speeds() {
     const Eigen::Vector2d s = dynamics().slip(i);
     auto& [reference, least] = slips_[static_cast<size_t>(i)];
     const bool slips = dynamics().slips(contact(i), i);
-    least = std::min(kSigma * follows.speed, s.norm() / 2);
+    least = kSigma * follows.speed;
+    if (slips && s.norm() <= least) least = s.norm() / 2;
     if (contact(i).begins && contact(i).mode == ContactMode::slides)
       take_direction(i, dynamics().first_direction(i));
     reference = slips ? Eigen::Vector2d(s / s.norm()) : contact(i).direction;
@@ -164,7 +170,7 @@ void ContactKernel::gates(double t, Gates& out, bool near) {
     if (law.tangential.empty()) continue;
     if (mode == ContactMode::rolls) second = dynamics().hold_left(i);
     else if (contact(i).begins) {
-      second = kGrown * contact(i).ease - dynamics().slip(i).norm();
+      second = grown(i) - dynamics().slip(i).norm();
       third = dynamics().slip(i).dot(contact(i).direction) + kSigma * followed(i).speed;
     } else if (law.friction > 0) second = slip_left(i);
   }

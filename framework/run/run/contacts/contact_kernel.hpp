@@ -7,11 +7,11 @@
 //            mu l_n - |l_t|               slides, along -l_t
 //   sliding  l_n                          opens
 //            s . d - sigma V              ceases to slip: d the direction of s at the last node,
-//                                         V a scale of velocities, sigma = 1e-7, and half of |s|
-//                                         there at most; the slip that is left, and the time that
-//                                         it takes to end, are taken to first order, with an error
-//                                         of order sigma^2.
-//   begins   1e-6 V - |s|                 slides (its friction has the direction of the slip), no
+//                                         V a scale of velocities, sigma = 1e-7, half of |s| where
+//                                         that is less already; the slip that is left, and the time
+//                                         that it takes to end, are taken to first order, with an
+//                                         error of order sigma^2.
+//   begins   max(3 eps, 1e-6 V) - |s|     slides (its friction has the direction of the slip), no
 //                                         event
 //            s . d + sigma V              has not begun
 // The step at whose end a slip stops is taken again, up to there. A gap that has just opened has a
@@ -64,7 +64,7 @@ class ContactKernel final : public KernelOfContacts {
  private:
   // A gap of this size, m, is closed at a start, or where other contacts hold it.
   static constexpr double kClosedGap = 1e-9;
-  // A slip of this many eps of (5) has grown.
+  // A slip of this many eps of (5), and of what has ended, has grown.
   static constexpr double kGrown = 3;
   enum class Switch { strikes, bears, opens, slides, stops, grows };
   // Gates of a contact; one that is infinite is none.
@@ -102,6 +102,7 @@ class ContactKernel final : public KernelOfContacts {
   void look_at(double t, bool near);
   std::optional<Found> stop_found();
   double slip_left(int i);
+  double grown(int i) const;
   double gate(int contact, size_t which, double t);
   double locate(int contact, size_t which, ValueAt before, ValueAt after);
   void graze(int i, double t);

@@ -89,7 +89,7 @@ void ContactKernel::grow(int first) {
   for (int i = 0; i < count(); ++i) {
     ContactState& state = contact(i);
     const Eigen::Vector2d s = dynamics().slip(i);
-    if (i != first && !(state.begins && s.norm() > kGrownToo * kGrown * state.ease)) continue;
+    if (i != first && !(state.begins && s.norm() > kGrownToo * grown(i))) continue;
     state.begins = false;
     if (s.norm() > 0) state.direction = s / s.norm();
   }
