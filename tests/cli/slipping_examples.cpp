@@ -77,6 +77,20 @@ TEST_F(SlippingExamples, ABoxFallsAndRests) {
   for (const double v : numbers(out["final"]["velocity"])) EXPECT_NEAR(v, 0, 1e-9);
 }
 
+// A robot that drives and turns until its wheels roll, each once: the last slip, which the end of
+// the one before leaves at a ten-millionth of the speed, ends there too, and does not go through 0
+// with friction on its wrong side.
+TEST_F(SlippingExamples, FourWheelsComeToRoll) {
+  const json out =
+      record({write("skid_steered.urdf", source_file("tests/examples/skid_steered.urdf")) +
+                  "?wheel=auto,friction=0.6",
+              "--start", "v1=1,omega=1", "--slip", "--until", "2"});
+  ASSERT_TRUE(out["status"] == "ok") << out["reason"].dump();
+  ASSERT_EQ(out["events"].size(), 4U);
+  for (const json& event : out["events"])
+    EXPECT_TRUE(event["name"].get<std::string>().ends_with("_wheel.rolls")) << event["name"];
+}
+
 // Across the edge v2' = -mu g, along it nothing acts.
 TEST_F(SlippingExamples, ASkateSlipsSideways) {
   const json out = run_of("skate_that_slips.toml", {"--slip", "--until", "2", "--rtol", "1e-10"});

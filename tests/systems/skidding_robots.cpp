@@ -77,7 +77,7 @@ TEST(SkiddingRobots, MoveAsInStepsOfOneSize) {
     }
     EXPECT_LT(exact.energy_error_max, 1e-7);
     const Result steps = simulate(m).slip().scheme("nonsmooth").step(1e-3).until(until).run();
-    if (!steps.status.ok) continue;  // jammed
+    ASSERT_TRUE(steps.status.ok) << steps.status.reason;  // rows that repeat each other do not jam
     ++compared;
     double size = 1e-6;
     for (const double v : exact.last.velocity) size = std::max(size, std::abs(v));
@@ -85,7 +85,7 @@ TEST(SkiddingRobots, MoveAsInStepsOfOneSize) {
       EXPECT_NEAR(exact.last.velocity[j], steps.last.velocity[j], 1e-4 * size) << j;
   }
   EXPECT_LE(ended, 3);
-  EXPECT_GE(compared, 6);
+  EXPECT_GE(compared, 14);
 }
 
 }  // namespace

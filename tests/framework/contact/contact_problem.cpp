@@ -172,7 +172,8 @@ TEST(ContactProblem, AGivenBoundInPlaceOfANormalReaction) {
   }
 }
 
-// Sweeps and the active set together, of contacts that are coupled.
+// Sweeps and active sets together, of contacts that are coupled, from 6 unknowns on with rows that
+// repeat each other's.
 TEST(ContactProblem, SeveralContacts) {
   Random random(5);
   ContactProblem problem(12, 4);
@@ -192,7 +193,7 @@ TEST(ContactProblem, SeveralContacts) {
     EXPECT_LT(contact_residual(g, c, blocks, problem.p()), kRoundOff);
     for (const Answer answer : problem.answers()) slides += answer == Answer::slides;
   }
-  EXPECT_GT(solved, most * 9 / 10);
+  EXPECT_EQ(solved, most);
   EXPECT_GT(slides, most / 4);
 }
 
