@@ -16,7 +16,7 @@ namespace check {
 namespace {
 
 constexpr double kOfRun = 1e-9;
-// The part of the velocity that a contact's force alone would make, below which is round-off of rest.
+// The part of the velocity that a force of one contact makes, below which is round-off of rest.
 constexpr double kOfForce = 1e-6;
 constexpr double kOfBalance = 1e-7;  // the quadrature of work adds its own errors
 

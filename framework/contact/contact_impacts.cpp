@@ -45,7 +45,8 @@ std::string ContactDynamics::why_coupled() const {
   if (!(coupling > 1e-12 * size)) return "";
   return fmt::format(
       "simultaneous_impacts: {} are closed at once at t = {:.10g} and coupled ({:.3g} of {:.3g} "
-      "1/kg): the impact depends on their order, which rigid bodies do not have",
+      "1/kg): the impact depends on their order, which rigid bodies do not have; the "
+      "scheme nonsmooth takes them as one",
       names_of_blocks(), time_, coupling, size);
 }
 

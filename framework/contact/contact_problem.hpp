@@ -7,11 +7,14 @@
 // the normal reaction (contact_dynamics.hpp). A contact without P_n has a given bound in place of
 // mu P_n. One contact is solved exactly, with all of its solutions; several with given bounds as
 // the convex problem that theirs is (convex_contacts.hpp), which finds a solution always; others by
-// sweeps of Gauss-Seidel over the exact ones of each. The equations of the active set end both.
+// sweeps of Gauss-Seidel over the exact ones of each. The equations of the active set end both: by
+// P - gamma/G_ii of their solution a contact that would do otherwise turns, until none does.
 // Nothing is to be tuned, and nothing is allocated behind the constructor.
 // Source: Leine, Glocker, A set-valued force law for spatial Coulomb-Contensou friction, Eur. J.
 // Mech. A 22 (2003); Klarbring, Mathematical programming and augmented Lagrangian methods for
-// frictional contact problems (1992), for the sweeps.
+// frictional contact problems (1992), for the sweeps; Hueeber, Stadler, Wohlmuth, A primal-dual
+// active set algorithm for three-dimensional contact problems with Coulomb friction, SIAM J. Sci.
+// Comput. 30 (2008).
 #pragma once
 
 #include <array>
