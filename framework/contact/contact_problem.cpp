@@ -140,8 +140,10 @@ void ContactProblem::shorten(int rank) {
   before_.head(size_).noalias() -= z.lazyProduct(residual_.head(open));
 }
 
-// Newton on the equations of the active set; the better of before and after stays.
-bool ContactProblem::improve(const Matrix& g, const Vector& c, const Blocks& blocks) {
+// Newton on the equations of the active set; the better of before and after stays. most_left: of
+// what these may leave beside a residual that is solved.
+bool ContactProblem::improve(const Matrix& g, const Vector& c, const Blocks& blocks,
+                             double most_left) {
   kept_.head(size_) = p_.head(size_);
   left_ = 0;
   double best = contact_residual(g, c, blocks, p_.head(size_));
@@ -158,7 +160,7 @@ bool ContactProblem::improve(const Matrix& g, const Vector& c, const Blocks& blo
     kept_.head(size_) = p_.head(size_);
   }
   p_.head(size_) = kept_.head(size_);
-  return best <= kSolved + std::min(left_, kMostLeft);
+  return best <= kSolved + std::min(left_, most_left);
 }
 
 // The active set by its own equations: their solution tells, by what P - gamma/G would be, which
@@ -167,7 +169,7 @@ bool ContactProblem::settle(const Matrix& g, const Vector& c, const Blocks& bloc
   start_.head(size_) = p_.head(size_);
   told_ = answers_;
   for (int turn = 0; turn < kTurns; ++turn) {
-    if (improve(g, c, blocks)) return true;
+    if (improve(g, c, blocks, kMostLeft)) return true;
     for (int k = 0; k < kNewton; ++k) {
       equations(g, c, blocks);
       if (!find_correction()) break;
@@ -212,11 +214,12 @@ bool ContactProblem::turn_contacts(const Matrix& g, const Vector& c, const Block
 }
 
 // Along the path of the convex problem until the equations of what it tells have a solution of (1)
-// next to it; where bounds differ so much that none has, anywhere.
+// next to it; where bounds differ so much that none has, anywhere. Its equations leave nothing: a
+// solution there always is.
 bool ContactProblem::minimise(const Matrix& g, const Vector& c, const Blocks& blocks) {
   const auto ends = [&](bool wary, bool anywhere) {
     convex_.tell(wary, p_.head(size_), answers_);
-    if (!improve(g, c, blocks)) return false;
+    if (!improve(g, c, blocks, 0)) return false;
     const auto told = residual_.head(size_), now = p_.head(size_);
     convex_.tell(wary, residual_.head(size_), answers_);
     const double size = std::max(told.lpNorm<Eigen::Infinity>(), now.lpNorm<Eigen::Infinity>());
@@ -247,7 +250,7 @@ bool ContactProblem::turn_some(const Matrix& g, const Vector& c, const Blocks& b
       if (answer != ContactAnswer::sticks) answer = ContactAnswer::sticks;
       else answer = normal ? ContactAnswer::opens : ContactAnswer::slides;
     }
-    if (improve(g, c, blocks)) return true;
+    if (improve(g, c, blocks, 0)) return true;
   }
   return false;
 }

@@ -81,7 +81,7 @@ class ContactProblem {
   bool sweep(const Matrix& g, const Vector& c, const Blocks& blocks);
   void look_at_block(const Matrix& g, const Vector& c, const ContactBlock& block);
   void equations(const Matrix& g, const Vector& c, const Blocks& blocks);
-  bool improve(const Matrix& g, const Vector& c, const Blocks& blocks);
+  bool improve(const Matrix& g, const Vector& c, const Blocks& blocks, double most_left);
   bool settle(const Matrix& g, const Vector& c, const Blocks& blocks);
   bool turn_contacts(const Matrix& g, const Vector& c, const Blocks& blocks, bool all);
   bool find_correction();
