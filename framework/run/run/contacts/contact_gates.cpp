@@ -24,6 +24,10 @@ constexpr size_t kParts = 5;
 constexpr double kSmallSlip = 1e-10, kSigma = 1e-7;
 // A change of a gate in a step, as a part of it, that needs no second look.
 constexpr double kLittle = 0.1;
+// A velocity that is this part of what forces alone would do in a step is that of rest.
+constexpr double kAtRest = 1e-6;
+// A reaction outside its cone by this part of the largest is no round-off.
+constexpr double kPulls = 1e-6;
 // A gap that turns at less than this part of its largest value grazes.
 constexpr double kGrazes = 1e-9;
 
@@ -41,6 +45,7 @@ void ContactKernel::evaluate_node() {
   if (rolls_on_) return;
   gates(now_->time(), at_node_);
   rolled_ = false;
+  follow_begun();
   follow_speeds();
   find_held();
   // The gates of slips along the directions that they have now: those of the last node may be
@@ -68,7 +73,7 @@ void ContactKernel::find_held() {
 
 // Above what it would end at, too.
 double ContactKernel::grown(int i) const {
-  return std::max(kGrown * contact(i).ease, 10 * kSigma * followed(i).speed);
+  return std::max(kGrown * contact(i).ease, 10 * kSigma * followed(i).scale());
 }
 
 // A slip that is small already, behind the end of another, ends at less.
@@ -81,13 +86,13 @@ void ContactKernel::follow_speeds() {
   for (int i = 0; i < count(); ++i) {
     FollowedContact& follows = followed(i);
     follows.speed = std::max(follows.speed, dynamics().speed_scale(i));
-    if (follows.speed == 0)  // at rest from the start on: that of a step
-      follows.speed = dynamics().acceleration_scale(i) * std::abs(now_->next_step());
-    contact(i).no_slip = kSmallSlip * follows.speed;
+    if (!(follows.speed > follows.rest))
+      follows.rest = kAtRest * dynamics().acceleration_scale(i) * std::abs(now_->next_step());
+    contact(i).no_slip = kSmallSlip * follows.scale();
     const Eigen::Vector2d s = dynamics().slip(i);
     auto& [reference, least] = slips_[static_cast<size_t>(i)];
     const bool slips = dynamics().slips(contact(i), i);
-    least = kSigma * follows.speed;
+    least = kSigma * follows.scale();
     if (slips && s.norm() <= least) least = s.norm() / 2;
     if (contact(i).begins && contact(i).mode == ContactMode::slides)
       take_direction(i, dynamics().first_direction(i));
@@ -171,7 +176,7 @@ void ContactKernel::gates(double t, Gates& out, bool near) {
     if (mode == ContactMode::rolls) second = dynamics().hold_left(i);
     else if (contact(i).begins) {
       second = grown(i) - dynamics().slip(i).norm();
-      third = dynamics().slip(i).dot(contact(i).direction) + kSigma * followed(i).speed;
+      third = dynamics().slip(i).dot(contact(i).direction) + kSigma * followed(i).scale();
     } else if (law.friction > 0) second = slip_left(i);
   }
 }
@@ -287,6 +292,19 @@ bool ContactKernel::stays(double from, double to) {
   return true;
 }
 
+// Is a reaction outside its cone between two looks, where a switch left it at the round-off of 0?
+bool ContactKernel::pulls(int i, size_t which, const Gates& before, const Gates& now) const {
+  const ContactMode mode = contact(i).mode;
+  const auto at = static_cast<size_t>(i);
+  if (mode == ContactMode::open || which > (mode == ContactMode::rolls ? 1 : 0)) return false;
+  if (!(before[at][which] < 0)) return false;
+  double most = 0;
+  for (int k = 0; k < count(); ++k)
+    if (contact(k).mode != ContactMode::open && dynamics().law(k).normal)
+      most = std::max(most, std::abs(now[static_cast<size_t>(k)][0]));
+  return now[at][which] < -kPulls * most;
+}
+
 void ContactKernel::catch_up() {
   if (std::exchange(rolled_, false)) follow_speeds();
 }
@@ -315,6 +333,8 @@ std::optional<ContactKernel::Found> ContactKernel::find(double from, double to) 
         const ValueAt first = part > 1 ? sample(part - 2) : ValueAt{kNoTime, kNoTime};
         const auto t = crossing(i, which, first, sample(part - 1), sample(part));
         if (t && (!out || *t < out->time)) out = Found{*t, i, switch_of(i, which)};
+        if (!out && pulls(i, which, values[part - 1], values[part]))
+          out = Found{times[part], i, switch_of(i, which)};
       }
     }
   }

@@ -26,6 +26,7 @@ ContactKernel::ContactKernel(SmoothKernels smooth, KernelSetup setup,
                              std::shared_ptr<RunContacts> contacts)
     : KernelOfContacts(std::move(smooth), std::move(setup), std::move(contacts)),
       slips_(static_cast<size_t>(count())),
+      begun_(static_cast<size_t>(count())),
       looks_(6),
       move_(g_) {
   ContactKernel::begin();

@@ -109,10 +109,17 @@ class ContactKernel final : public KernelOfContacts {
   bool leaves(int i, double opened, double dip);
   std::optional<double> crossing(int contact, size_t which, ValueAt first, ValueAt before,
                                  ValueAt now);
+  bool pulls(int i, size_t which, const Gates& before, const Gates& now) const;
   std::optional<Found> find(double from, double to);
   // At the end of a step in which all contacts roll: are their gates far from 0 all along?
   bool stays(double from, double to);
   Switch switch_of(int contact, size_t gate) const;
+
+  // contact_begins: contacts that begin to slide.
+  void grow(int first);
+  void choose_ease(const ContactStates& before);
+  void follow_begun();
+  void end_begun(int i);
 
   // contact_switch: at the state of a switch.
   std::string apply(const Found& found);
@@ -122,8 +129,6 @@ class ContactKernel final : public KernelOfContacts {
   std::string decide(const std::vector<char>& slides);
   std::string go_on(const std::vector<char>& slides);
   std::vector<char> at_rims(int first);
-  void grow(int first);
-  void choose_ease(const ContactStates& before);
   void take_up(double step);
   std::shared_ptr<const Mechanics> mechanics_of(
       const std::shared_ptr<const ContactStates>& states) const;
@@ -151,6 +156,11 @@ class ContactKernel final : public KernelOfContacts {
     double least = 0;
   };
   std::vector<Slip> slips_;
+  // A slip that begins: when, and its largest part across its friction.
+  struct Begun {
+    double since = 0, across = 0;
+  };
+  std::vector<Begun> begun_;
   Gates at_node_, middle_, end_, one_;
   Gates before_node_;         // of the node before, where all contacts have rolled since
   std::vector<Gates> looks_;  // at the parts of a step

@@ -19,10 +19,8 @@ constexpr double kTogether = 1e-9;
 constexpr double kSlow = 1e-6;
 // A rate behind an impact that is this part of the speeds of the contact is round-off of them.
 constexpr double kNoRate = 1e-14;
-// A slip that is this part of one that has grown has grown too.
-constexpr double kGrownToo = 0.5;
-// eps of (5) of contact_dynamics.hpp beside the slip at which it would make the error of a step.
-constexpr double kEase = 1;
+// A gap that opens by a rate which is this part of them begins no flight of its own.
+constexpr double kNoFlight = 1e-12;
 
 }  // namespace
 
@@ -82,33 +80,6 @@ std::string ContactKernel::apply(const Found& found) {
   last.events = events_;
   state(last.after, {});
   return why;
-}
-
-// The slip of contact `first`, and of others that began with it, has grown.
-void ContactKernel::grow(int first) {
-  for (int i = 0; i < count(); ++i) {
-    ContactState& state = contact(i);
-    const Eigen::Vector2d s = dynamics().slip(i);
-    if (i != first && !(state.begins && s.norm() > kGrownToo * grown(i))) continue;
-    state.begins = false;
-    if (s.norm() > 0) state.direction = s / s.norm();
-  }
-}
-
-// eps^2 d'/a is a part of what a step may be off, for directions d that turn once in the run.
-void ContactKernel::choose_ease(const ContactStates& before) {
-  bool accelerated = false;
-  for (int i = 0; i < count(); ++i) {
-    ContactState& state = contact(i);
-    if (!state.begins || state.mode != ContactMode::slides) continue;
-    const ContactState& was = before[static_cast<size_t>(i)];
-    if (was.begins && was.mode == ContactMode::slides) continue;
-    state.ease = 0;
-    if (!std::exchange(accelerated, true)) dynamics().accelerate(contacts_->states());
-    const double left = std::abs(limit_ - time_), speed = followed(i).speed;
-    const double way = std::isfinite(left) ? dynamics().friction_acceleration(i) * left : speed;
-    state.ease = kEase * std::sqrt(setup_.errors.at(speed) * way);
-  }
 }
 
 // Contact `first`, and others that roll and whose reactions are on the rims of their cones with it,
@@ -237,7 +208,7 @@ void ContactKernel::end_chatter(int i, double ratio) {
 // The slip that is left takes the time |s|/|s|' to end.
 std::string ContactKernel::stop_slip(int i) {
   const Eigen::Vector2d s = dynamics().slip(i);
-  if (s.norm() > kSlow * followed(i).speed) {  // the direction of the slip has turned
+  if (s.norm() > kSlow * followed(i).scale()) {  // the direction of the slip has turned
     contact(i).direction = s / s.norm();
     return "";
   }
@@ -256,6 +227,7 @@ std::string ContactKernel::stop_slip(int i) {
     time_ += more;
     dynamics().evaluate(time_, g_.data(), xi_);
   }
+  end_begun(i);
   contact(i).begins = false;
   if (dynamics().stop(contacts_->states(), i, xi_)) dynamics().evaluate(time_, g_.data(), xi_);
   contact(i).mode = ContactMode::rolls;
@@ -271,7 +243,7 @@ double ContactKernel::first_step(double step) {
         dynamics().height_of_held(contacts_->states(), i))
       continue;
     const double rate = dynamics().gap_rate(i), a = -dynamics().gap_acceleration(i);
-    if (rate > 0 && a > 0) out = std::min(out, rate / a);
+    if (rate > kNoFlight * followed(i).speed && a > 0) out = std::min(out, rate / a);
   }
   return std::max(out, std::numeric_limits<double>::epsilon() * 4 * std::abs(time_));
 }

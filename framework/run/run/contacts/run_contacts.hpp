@@ -21,8 +21,10 @@ struct FollowedContact {
   double opened = -1e300;  // when it left its gap of 0, which is a root of the gap then
   double struck = -1e300, between = 0;  // last strike, and the time before it since another
   double speed = 0;                     // m/s: the largest speed_scale() so far
+  double rest = 0;                      // m/s: a contact as slow as this is at rest
   double height = 0;                    // m: the largest gap so far
   bool held = false;  // open, at a height that others hold; found again at each node
+  double scale() const { return std::max(speed, rest); }
   template <class Archive>
   void serialize(Archive& archive) {
     archive(opened, struck, between, speed, height);
