@@ -165,11 +165,12 @@ bool ContactProblem::improve(const Matrix& g, const Vector& c, const Blocks& blo
 
 // The active set by its own equations: their solution tells, by what P - gamma/G would be, which
 // contacts do otherwise, and these turn, all of them or, where that goes round, the first one.
-bool ContactProblem::settle(const Matrix& g, const Vector& c, const Blocks& blocks) {
+bool ContactProblem::settle(const Matrix& g, const Vector& c, const Blocks& blocks,
+                            double most_left) {
   start_.head(size_) = p_.head(size_);
   told_ = answers_;
   for (int turn = 0; turn < kTurns; ++turn) {
-    if (improve(g, c, blocks, kMostLeft)) return true;
+    if (improve(g, c, blocks, most_left)) return true;
     for (int k = 0; k < kNewton; ++k) {
       equations(g, c, blocks);
       if (!find_correction()) break;
@@ -231,7 +232,8 @@ bool ContactProblem::minimise(const Matrix& g, const Vector& c, const Blocks& bl
       while (convex_.follow())
         if (convex_.tells() && (ends(true, anywhere) || ends(false, anywhere))) return true;
     }
-  return turn_some(g, c, blocks);
+  convex_.tell(false, p_.head(size_), answers_);
+  return settle(g, c, blocks, 0) || turn_some(g, c, blocks);
 }
 
 // Where bounds differ by orders of magnitude, what a contact presses on its rim is below the
@@ -283,7 +285,7 @@ ContactProblem::Outcome ContactProblem::solve_next(const Matrix& g, const Vector
 }
 
 bool ContactProblem::refine(const Matrix& g, const Vector& c, const Blocks& blocks) {
-  return size_ == c.size() && answers_.size() == blocks.size() && settle(g, c, blocks);
+  return size_ == c.size() && answers_.size() == blocks.size() && settle(g, c, blocks, kMostLeft);
 }
 
 // Sweeps until the equations of what the contacts then do have a solution, after so many for the
@@ -298,7 +300,8 @@ ContactProblem::Outcome ContactProblem::sweeps(const Matrix& g, const Vector& c,
     for (const ContactBlock& block : blocks)
       if (!block.normal) most = std::max(most, block.bound);
     const bool settled = moved <= 1e-15 * most;
-    if ((settled || k == first_look || k % kLook == 0) && settle(g, c, blocks)) return Outcome::one;
+    if ((settled || k == first_look || k % kLook == 0) && settle(g, c, blocks, kMostLeft))
+      return Outcome::one;
     if (settled) break;
   }
   return Outcome::none;

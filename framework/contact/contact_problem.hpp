@@ -82,7 +82,7 @@ class ContactProblem {
   void look_at_block(const Matrix& g, const Vector& c, const ContactBlock& block);
   void equations(const Matrix& g, const Vector& c, const Blocks& blocks);
   bool improve(const Matrix& g, const Vector& c, const Blocks& blocks, double most_left);
-  bool settle(const Matrix& g, const Vector& c, const Blocks& blocks);
+  bool settle(const Matrix& g, const Vector& c, const Blocks& blocks, double most_left);
   bool turn_contacts(const Matrix& g, const Vector& c, const Blocks& blocks, bool all);
   bool find_correction();
   void shorten(int rank);

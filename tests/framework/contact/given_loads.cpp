@@ -168,4 +168,39 @@ TEST(GivenLoadsOfSeveralContacts, TwoWheelsOnOneAxle) {
   EXPECT_NEAR(problem.p()[1], problem.p()[3], 1e-2);
 }
 
+// A stop of a joint that has dry friction too: their rows are the same, and the stop gives way by
+// 1e-9, so that friction slips by that, beside what holds it at its rim.
+TEST(GivenLoadsOfSeveralContacts, AStopBesideFriction) {
+  Random random(9);
+  ContactProblem problem(12, 5);
+  int failed = 0, pressed = 0;
+  double worst = 0;
+  for (int k = 0; k < 20000; ++k) {
+    const int joints = 2 + k % 3;
+    const Eigen::MatrixXd w = random.matrix(joints, joints);
+    std::vector<int> rows(static_cast<size_t>(joints));
+    for (int i = 0; i < joints; ++i) rows[static_cast<size_t>(i)] = i;
+    const int stopped = k % joints;
+    rows.push_back(stopped);
+    const Eigen::MatrixXd all = w * w.transpose();
+    Eigen::MatrixXd g = all(rows, rows);
+    const Eigen::VectorXd moved = w * random.matrix(joints, 1), c = moved(rows);
+    std::vector<ContactBlock> blocks;
+    for (int i = 0; i < joints; ++i)
+      blocks.push_back(
+          {.first = i, .normal = false, .tangential = 1, .bound = std::exp(random.uniform(-9, 0))});
+    blocks.push_back({.first = joints, .normal = true, .tangential = 0});
+    g(joints, joints) *= 1 + 1e-9;
+    if (problem.solve(g, c, blocks) != Outcome::one) {
+      ++failed;
+      continue;
+    }
+    worst = std::max(worst, contact_residual(g, c, blocks, problem.p()));
+    pressed += problem.p()[joints] > 0;
+  }
+  EXPECT_EQ(failed, 0);
+  EXPECT_LT(worst, kRoundOff);
+  EXPECT_GT(pressed, 5000);
+}
+
 }  // namespace
