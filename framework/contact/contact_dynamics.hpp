@@ -117,7 +117,7 @@ class ContactDynamics {
   bool yields_with(int i, int first);
   /// Behind accelerate(), of an open contact whose normal row follows from those of closed ones
   /// (the fourth of four legs): its height where these give way by l/share each, which is above 0
-  /// as long as it bears nothing. None where it is free.
+  /// as long as it bears nothing; infinite where what sticks holds it. None where it is free.
   std::optional<double> height_of_held(const ContactStates& states, int i);
   /// N M_A C^T of a contact that slides.
   double coefficient(int i) const { return coefficient_[static_cast<size_t>(i)]; }
@@ -173,6 +173,7 @@ class ContactDynamics {
 
  private:
   double scale_at(int i, const Eigen::VectorXd& velocity);
+  int hold(const ContactStates& states, int i, bool across);
   struct Row {
     int row;      // of A
     int contact;  // whose it is

@@ -1,6 +1,7 @@
 // The rows that are on and their reactions, where rows may depend on each other.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <hamel/framework/contact/contact_dynamics.hpp>
 #include <hamel/framework/lie/linear_solve.hpp>
@@ -156,17 +157,37 @@ bool ContactDynamics::yields_with(int i, int first) {
 
 // N_i = sum_j w_j N_j: the height sum_j w_j h_j of heights h_j = -l_j/share. w is the least-squares
 // solution in the metric, R M_A R^T w = R M_A N_i^T, and what is left of N_i beside it is
-// round-off.
+// round-off. What sticks across does not give way: with it the height is held for good (a stop of
+// a joint whose friction sticks).
 std::optional<double> ContactDynamics::height_of_held(const ContactStates& states, int i) {
   limit();
   if (!law(i).normal || !(law(i).share > 0)) return {};
+  if (const int m = hold(states, i, false); m > 0) {
+    double height = 0;
+    for (int j = 0; j < m; ++j) {
+      const int of = on_[static_cast<size_t>(j)].contact;
+      height -= multipliers_[j] * normal_reaction(of) / law(of).share;
+    }
+    return height;
+  }
+  if (!mechanics_->has_drift() && hold(states, i, true) > 0)
+    return std::numeric_limits<double>::infinity();
+  return {};
+}
+
+// The number of rows of closed contacts, N alone or with what sticks across, of which the normal
+// row of contact i is a combination, w in multipliers_; 0 where it is none.
+int ContactDynamics::hold(const ContactStates& states, int i, bool across) {
   const Row own = {*law(i).normal, i};
   on_.clear();
-  for (int j = 0; j < count(); ++j)
-    if (states[static_cast<size_t>(j)].mode != ContactMode::open && law(j).normal)
-      on_.push_back({*law(j).normal, j});
+  for (int j = 0; j < count(); ++j) {
+    const ContactMode mode = states[static_cast<size_t>(j)].mode;
+    if (mode != ContactMode::open && law(j).normal) on_.push_back({*law(j).normal, j});
+    if (!across || mode != ContactMode::rolls) continue;
+    for (const int row : law(j).tangential) on_.push_back({row, j});
+  }
   const auto m = static_cast<int>(on_.size());
-  if (m < 2 || m + 1 > responses_.cols()) return {};
+  if (m < (across ? 1 : 2) || m + 1 > responses_.cols()) return 0;
   respond_to(own.row, m);
   auto w = multipliers_.head(m);
   for (int j = 0; j < m; ++j) {
@@ -181,13 +202,7 @@ std::optional<double> ContactDynamics::height_of_held(const ContactStates& state
   row_ = responses_.col(m);
   for (int j = 0; j < m; ++j) row_ -= w[j] * responses_.col(j);
   const double rest = row_times(own.row, row_), size = row_times(own.row, responses_.col(m));
-  if (!(std::abs(rest) <= kDependent * size)) return {};
-  double height = 0;
-  for (int j = 0; j < m; ++j) {
-    const int of = on_[static_cast<size_t>(j)].contact;
-    height -= w[j] * normal_reaction(of) / law(of).share;
-  }
-  return height;
+  return std::abs(rest) <= kDependent * size ? m : 0;
 }
 
 void ContactDynamics::give_way_by(double compliance, int m) {
