@@ -87,6 +87,10 @@ constexpr auto min_element(R&& range, C before = {}, P of = {}) {
     return std::invoke(before, std::invoke(of, a), std::invoke(of, b));
   });
 }
+template <class A, class B, class F = equal_to<>>
+constexpr bool equal(A&& a, B&& b, F same = {}) {
+  return std::equal(std::begin(a), std::end(a), std::begin(b), std::end(b), same);
+}
 template <class R, class T, class C = Less, class P = identity>
 constexpr auto lower_bound(R&& range, const T& value, C before = {}, P of = {}) {
   return std::lower_bound(
