@@ -87,7 +87,7 @@ constexpr auto min_element(R&& range, C before = {}, P of = {}) {
     return std::invoke(before, std::invoke(of, a), std::invoke(of, b));
   });
 }
-template <class A, class B, class F = equal_to<>>
+template <class A, class B, class F = std::equal_to<>>
 constexpr bool equal(A&& a, B&& b, F same = {}) {
   return std::equal(std::begin(a), std::end(a), std::begin(b), std::end(b), same);
 }
