@@ -113,6 +113,25 @@ TEST_F(Motion, AFilm) {
               HasSubstr("frames, expected at most 20000"));
 }
 
+// A frame is painted once: software WebGL takes most of the time of a film.
+TEST_F(Motion, AFrameIsPaintedOnce) {
+  write("browser",
+        "#!/bin/sh\n"
+        "\"$(command -v chromium chromium-browser google-chrome | head -1)\" \"$@\" | tee '" +
+            file("drawn") + "'\n");
+  std::filesystem::permissions(file("browser"), std::filesystem::perms::owner_all);
+  const auto outcome = motion("m.gif", {"--size", "128x96", "--speed", "0.5"},
+                              "CHROMIUM='" + file("browser") + "' ");
+  const std::string page = contents(file("drawn"));
+  if (page.empty()) HAMEL_SKIP_WITHOUT("browser or no ffmpeg");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const std::string mark = "data-drawings=\"";
+  const size_t at = page.find(mark);
+  ASSERT_NE(at, std::string::npos);
+  const int frames = 17, others = 6;
+  EXPECT_LE(std::stoi(page.substr(at + mark.size())), frames + others);
+}
+
 class Live : public hamel::test::CommandLine {
  protected:
   void SetUp() override {

@@ -129,11 +129,13 @@ export function animation(block, { height = heightFor } = {}) {
     if (many) stage.see(roomOf(bodies, bodies.map((_, b) => [...ghosts, posesAt(t)].map((at) => at[b])), block.floor));
     else stage.rebuild();
   };
-  /** Frames, to be drawn one after the other: (t, before) -> canvas. */
+  /** Frames, to be drawn one after the other, each once: (t, before) -> canvas. */
   const film = (sharper, transparent) => {
     const take = stage.film(sharper, transparent);
-    return (t, before) => {
-      hold(t, before);
+    let begun = false;
+    return (t, before = []) => {
+      stage.unpainted(() => { if (begun && before.length === 0) seek(t); else hold(t, before); });
+      begun = before.length === 0;
       return take();
     };
   };

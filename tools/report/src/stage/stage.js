@@ -98,11 +98,11 @@ export class Stage {
   /** The first picture, as SVG, behind what `first` sets; then by WebGL. Where that is ready (`warm`), by WebGL at once. */
   async draw(first = () => {}) {
     const ready = spare !== null && this.#takeWebgl();
-    this.held = true;
-    this.rebuild();
-    this.goTo(this.from);
-    first();
-    this.held = false;
+    this.unpainted(() => {
+      this.rebuild();
+      this.goTo(this.from);
+      first();
+    });
     this.paint();
     this.controls.addEventListener('change', () => { if (!this.painting) this.paint(); });
     const isDark = matchMedia('(prefers-color-scheme: dark)');
@@ -114,6 +114,13 @@ export class Stage {
     await afterFirstPicture();
     if (this.disposed) return;
     if (!this.#useWebgl()) this.holder.closest('figure').append(remark('Drawn without WebGL, which this browser does not offer here.'));
+  }
+
+  /** Changes that are painted together, later. */
+  unpainted(change) {
+    this.held = true;
+    change();
+    this.held = false;
   }
 
   #takeWebgl() {
