@@ -156,6 +156,28 @@ TEST_F(Live, TheTextIsInThePage) {
   EXPECT_THAT(contents(file("b.html")), HasSubstr("{\"system\":\"bicycle\"}"));
 }
 
+// As sliders of the page, which knows no tables.
+TEST_F(Live, OptionsOfARun) {
+  const auto outcome = live({"segway", "-o", "s.html", "--until", "3", "--velocity", "0,1,0,0,0,0",
+                             "--set", "gravity=9", "--input", "left_torque=2", "--no-exact"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(contents(file("s.html")),
+              HasSubstr(R"({"inputs":{"left_torque":2.0},"options":{"no_exact":"true",)"
+                        R"("until":"3","velocity":"0,1,0,0,0,0"},"parameters":{"gravity":[9.0]},)"
+                        R"("system":"segway"})"));
+  const auto refused = [&](Words words) {
+    const auto wrong = live(std::move(words));
+    EXPECT_EQ(wrong.status, 2) << wrong.err;
+    return wrong.err;
+  };
+  EXPECT_THAT(refused({"segway", "--set", "masss=2"}), HasSubstr("masss"));
+  EXPECT_THAT(refused({"segway", "--velocity", "1,2"}), HasSubstr("velocity"));
+  EXPECT_THAT(refused({"segway", "--until", "soon"}), HasSubstr("--until"));
+  EXPECT_THAT(refused({"segway", "--input", "left_torque=t.csv"}), HasSubstr("reads no tables"));
+  write("wrong.toml", "name = \"x\"\nbody = [\n");  // the page shows what is wrong
+  EXPECT_EQ(live({"wrong.toml", "-o", "w.html", "--until", "3"}).status, 0);
+}
+
 TEST_F(Live, Mistakes) {
   EXPECT_THAT(live({"bicicle"}).err, HasSubstr("did you mean 'bicycle'?"));
   EXPECT_THAT(live({"none.toml"}).err, HasSubstr("none.toml"));

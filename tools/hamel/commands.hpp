@@ -62,6 +62,8 @@ int report(const ReportOptions& options);
 struct LiveOptions {
   std::string system;  // a name or a file
   std::string output;  // -o; empty: NAME-live.html in the folder of temporary files
+  Config config;       // of its run, with the system
+  std::map<std::string, std::string> given;  // options of it that are given, by their names
   std::optional<long> port;
   bool open = true;  // --no-open
 };

@@ -80,6 +80,40 @@ nlohmann::json content_of(const std::string& system) {
   return {{"text", read_system_file(system)}};
 }
 
+// What goes before the text in it, in the page as sliders: options, parameters and inputs.
+void add_run(const LiveOptions& options, nlohmann::json& content) {
+  if (!options.given.empty()) content["options"] = options.given;
+  const Config& config = options.config;
+  if (!config.parameters.empty()) content["parameters"] = config.parameters;
+  for (const auto& [name, signal] : config.inputs) {
+    if (!std::holds_alternative<double>(signal))
+      throw ConfigError(
+          {fmt::format("--input: {}: got '{}', expected a number: the playground "
+                       "reads no tables",
+                       name, text_of(signal))});
+    content["inputs"][name] = std::get<double>(signal);
+  }
+}
+
+std::vector<std::string> mistakes_of(const Config& config) {
+  try {
+    Simulation simulation(registry(), config.system);
+    simulation.config(config);
+    return simulation.mistakes();
+  } catch (const ConfigError& error) {
+    return error.mistakes();
+  }
+}
+
+// Mistakes of what the line gives; the page shows those of the file, at their lines.
+std::vector<std::string> mistakes_of_run(const LiveOptions& options) {
+  const Config& config = options.config;
+  if (options.given.empty() && config.parameters.empty() && config.inputs.empty()) return {};
+  Config plain;
+  plain.system = options.system;
+  return mistakes_of(plain).empty() ? mistakes_of(config) : std::vector<std::string>();
+}
+
 std::string filled(std::string page, const nlohmann::json& content) {
   std::string text;
   for (const char c : content.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace))
@@ -185,9 +219,11 @@ int live(const LiveOptions& options) {
   nlohmann::json content;
   try {
     content = content_of(options.system);
+    add_run(options, content);
   } catch (const ConfigError& error) {
     mistakes.insert(mistakes.end(), error.mistakes().begin(), error.mistakes().end());
   }
+  if (mistakes.empty()) mistakes = mistakes_of_run(options);
   if (!mistakes.empty()) throw ConfigError(mistakes);
   const std::string page = filled(playground(), content);
   if (options.port) {

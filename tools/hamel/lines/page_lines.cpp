@@ -7,6 +7,7 @@
 
 #include "commands.hpp"
 #include "lines/number_option.hpp"
+#include "lines/run_line.hpp"
 
 namespace hamel::tools {
 
@@ -57,25 +58,37 @@ Action define_report(CLI::App& app) {
 
 Action define_live(CLI::App& app) {
   const auto options = std::make_shared<LiveOptions>();
+  const auto line = std::make_shared<RunLine>();
   app.add_option("SYSTEM", options->system,
                  "a system (hamel list systems) or a file, my_system.toml, run.toml")
       ->required();
-  app.add_option("-o,--output", options->output,
-                 "the page, one file [SYSTEM-live.html in the folder of temporary files]");
+  CLI::Option* output =
+      app.add_option("-o,--output", options->output,
+                     "the page, one file [SYSTEM-live.html in the folder of temporary files]");
   number_option<long>(
       app, "--port", [options](long port) { options->port = port; },
       "serve the page at http://localhost:PORT until Ctrl-C; 0: any that is free");
   app.add_flag_callback(
       "--no-open", [options] { options->open = false; }, "open no browser");
+  line->define_options(app, {});
+  group_run_options(app);
+  output->group("Options");
   app.footer(
       "The playground with this system in it: an editor and sliders beside the motion. It needs no "
       "server; the page is tools/playground's, which this program finds where it was built or "
-      "installed, or at HAMEL_PLAYGROUND.\n"
+      "installed, or at HAMEL_PLAYGROUND. Options of a run are its sliders, and go with its "
+      "links.\n"
       "Examples:\n"
       "  hamel live bicycle\n"
+      "  hamel live bicycle --speed 5 --until 3 --input steer.torque=0.2\n"
       "  hamel live robot.toml -o robot.html\n"
       "  hamel live robot.toml --port 8000     # from another machine: ssh -L 8000:localhost:8000");
-  return [options] { return live(*options); };
+  return [options, line, &app] {
+    line->system = options->system;
+    options->config = line->resolve(app).config;
+    options->given = RunLine::given(app);
+    return live(*options);
+  };
 }
 
 }  // namespace hamel::tools

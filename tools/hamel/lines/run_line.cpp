@@ -34,6 +34,26 @@ void read_inputs(const std::vector<std::string>& given, InputSignals& inputs) {
 
 }  // namespace
 
+void group_run_options(CLI::App& app) {
+  group_options(app, "Motion",
+                {"--config", "--continue", "--set", "--input", "--configuration", "--velocity",
+                 "--momentum", "--speed", "--start", "--slip", "--from", "--until"});
+  group_options(
+      app, "Method",
+      {"--scheme", "--retraction", "--s", "--step", "--rtol", "--atol", "--step-max", "--steps-max",
+       "--solver", "--tolerance", "--force-at", "--compose", "--force", "--on-failure"});
+  group_options(app, "Events and checks", {"--events", "--stop-at", "--check", "--no-exact"});
+  group_options(app, "Output",
+                {"--output", "--every", "--output-step", "--output-times", "--report", "--json",
+                 "--quiet", "--verbose"});
+}
+
+std::string flag_of(const Option& option) {
+  std::string flag = fmt::format("--{}", option.name);
+  std::ranges::replace(flag, '_', '-');
+  return flag;
+}
+
 void read_sets(const std::vector<std::string>& sets, Parameters& parameters) {
   std::vector<std::string> mistakes;
   for (const std::string& set : sets) {
@@ -56,13 +76,17 @@ void RunLine::define_run(CLI::App& app, const std::set<std::string>& without) {
   app.add_option("SYSTEM", system,
                  "a registered system (hamel list systems) or a file, my_system.toml, robot.urdf");
   app.add_option("--config", config_file, "a TOML file with the same names; the command line wins");
+  robot.define(app);
+  define_options(app, without);
+}
+
+void RunLine::define_options(CLI::App& app, const std::set<std::string>& without) {
   app.add_option("--set", sets, "a parameter, name=value[,value...] (repeatable)")
       ->allow_extra_args(false);
   app.add_option("--input", inputs,
                  "an input, name=value or name=table.csv (columns t,value; linear, or held from "
                  "row to row with :hold behind the file) (repeatable)")
       ->allow_extra_args(false);
-  robot.define(app);
   Config::start_fields([&]<class Value>(const Option& field, Value Start::*member) {
     option<Value>(app, field, {}, [member](Config& c) -> Value& { return c.start.*member; });
   });
@@ -71,6 +95,18 @@ void RunLine::define_run(CLI::App& app, const std::set<std::string>& without) {
     option<Value>(app, field, Config().*member,
                   [member](Config& c) -> Value& { return c.*member; });
   });
+}
+
+std::map<std::string, std::string> RunLine::given(const CLI::App& app) {
+  std::map<std::string, std::string> out;
+  const auto take = [&](const Option& field, auto) {
+    const CLI::Option* option = app.get_option_no_throw(flag_of(field));
+    if (option != nullptr && option->count() > 0)
+      out[field.name] = fmt::format("{}", fmt::join(option->results(), ","));
+  };
+  Config::start_fields(take);
+  Config::fields(take);
+  return out;
 }
 
 void RunLine::define(CLI::App& app) {
@@ -90,17 +126,7 @@ void RunLine::define(CLI::App& app) {
   app.add_flag("--json", options.json, "print the record as JSON");
   app.add_flag("--quiet", options.quiet, "print nothing but errors (and --json)");
   add_verbose(app, options.verbose);
-  group_options(app, "Motion",
-                {"--config", "--continue", "--set", "--input", "--configuration", "--velocity",
-                 "--momentum", "--speed", "--start", "--from", "--until"});
-  group_options(
-      app, "Method",
-      {"--scheme", "--retraction", "--s", "--step", "--rtol", "--atol", "--step-max", "--steps-max",
-       "--solver", "--tolerance", "--force-at", "--compose", "--force", "--on-failure"});
-  group_options(app, "Events and checks", {"--events", "--stop-at", "--check", "--no-exact"});
-  group_options(app, "Output",
-                {"--output", "--every", "--output-step", "--output-times", "--report", "--json",
-                 "--quiet", "--verbose"});
+  group_run_options(app);
   app.footer(
       "Exit status: 0 done, 1 numerical failure (what was computed is written), or interrupted "
       "or disk\n"

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -18,6 +19,12 @@
 #include "lines/robot_line.hpp"
 
 namespace hamel::tools {
+
+/// The flag of an option of a run: --step-max.
+std::string flag_of(const Option& option);
+
+/// Puts the options of a run below titles in the help.
+void group_run_options(CLI::App& app);
 
 /// name=value[,value...], each as --set has it, into parameters. Throws ConfigError with all that
 /// do not fit.
@@ -51,8 +58,8 @@ struct RunLine {
   template <class Value>
   void option(CLI::App& app, const Option& option, const Value& usual,
               const std::function<Value&(Config&)>& member) {
-    std::string flag = fmt::format("--{}", option.name), help = option.meaning;
-    std::replace(flag.begin(), flag.end(), '_', '-');
+    const std::string flag = flag_of(option);
+    std::string help = option.meaning;
     if (const std::string text = text_of(usual); !text.empty())
       help += fmt::format(" [{}{}]", text, std::string(option.unit) == "s" ? " s" : "");
     const auto give = [this, member](const Value& value) {
@@ -80,7 +87,11 @@ struct RunLine {
   void define(CLI::App& app);
   /// The system, its parameters and start, and every option of a run but these.
   void define_run(CLI::App& app, const std::set<std::string>& without);
+  /// Parameters, inputs, the start, and every option of a run but these.
+  void define_options(CLI::App& app, const std::set<std::string>& without);
   RunOptions resolve(const CLI::App& app);
+  /// The start and the options of a run that the line gives, as their texts.
+  static std::map<std::string, std::string> given(const CLI::App& app);
 
  private:
   // After the run of a record; or, of a file whose run is unfinished, with that run.

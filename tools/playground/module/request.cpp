@@ -29,6 +29,21 @@ std::vector<double> numbers_of(const Json& value) {
   return {value.get<double>()};
 }
 
+// An option of a run or its start, in the place of what the text has of the start.
+void set(Config& config, const std::string& name, const std::string& text) {
+  bool starts = false;
+  Config::start_fields([&](const Option& field, auto member) {
+    if (name != field.name) return;
+    starts = true;
+    if (name != "configuration") config.start.velocity = config.start.momentum = {};
+    read_text(name, text, config.start.*member);
+    config.speed.reset();
+  });
+  if (starts) return;
+  if (name == "speed") config.start = {};
+  config.set(name, text);
+}
+
 }  // namespace
 
 Simulation simulation_of(const Json& request) {
@@ -36,7 +51,7 @@ Simulation simulation_of(const Json& request) {
   Config config = out.config();
   const Json none = Json::object();
   const Json options = request.value("options", none);
-  for (const auto& [name, value] : options.items()) config.set(name, value.get<std::string>());
+  for (const auto& [name, value] : options.items()) set(config, name, value.get<std::string>());
   const Json parameters = request.value("parameters", none);
   for (const auto& [name, value] : parameters.items()) config.parameters[name] = numbers_of(value);
   const Json inputs = request.value("inputs", none);

@@ -99,14 +99,16 @@ const quoted = (text) => JSON.stringify(text).replaceAll('<', '\\u003c');
 const whole = await bundled('main.js', { format: 'iife' });
 const inScript = (text) => text.replace(/<\/(script)/gi, '<\\/$1').replace(/<!--/g, '<\\!--');
 const within = source(`new Worker(URL.createObjectURL(new Blob([${quoted(worker)}], { type: 'text/javascript' })))`,
-  `Promise.resolve(new Response(new Blob([Uint8Array.from(atob(document.getElementById('module').textContent), (c) => c.charCodeAt(0))])
+  `new Promise((done) => { addEventListener('DOMContentLoaded', done); }).then(() => new Response(new Blob([Uint8Array.from(atob(document.getElementById('module').textContent), (c) => c.charCodeAt(0))])
     .stream().pipeThrough(new DecompressionStream('gzip')), { headers: { 'content-type': 'application/wasm' } }))`,
   "(({ [name]: motion }) => motion ?? null)(JSON.parse(document.getElementById('stored').textContent))");
 const FIRST = /const FIRST = '(\w+)'/.exec(read(here, 'src/main.js'))[1];
 writeFileSync(join(output, 'playground.html'), fill(template, {
   POLICY: POLICY.one,
   '<!--HEAD-->': `${comment}\n<style>${textOf(whole, '.css')}</style>`,
-  '<!--SCRIPTS-->': `<script type="application/json" id="stored">${quoted({ [FIRST]: stored[FIRST] })}</script>\n<script type="text/plain" id="module">${gzipSync(readFileSync(join(module, 'hamel.wasm')), { level: 9 }).toString('base64')}</script>\n` +
-    `<script>${within}</script>\n<script>${inScript(textOf(whole, '.js'))}</script>`,
+  // The module is the last: the first motion does not wait until it is read.
+  '<!--SCRIPTS-->': `<script type="application/json" id="stored">${quoted({ [FIRST]: stored[FIRST] })}</script>\n<script>${within}</script>\n` +
+    `<script>${inScript(textOf(whole, '.js'))}</script>\n` +
+    `<script type="text/plain" id="module">${gzipSync(readFileSync(join(module, 'hamel.wasm')), { level: 9 }).toString('base64')}</script>`,
 }));
 console.log(`${join(output, 'index.html')}, and playground.html: ${Math.round(statSync(join(output, 'playground.html')).size / 1024)} KB`);

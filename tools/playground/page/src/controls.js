@@ -25,6 +25,11 @@ export function reachOf(value, { least, most, open }) {
   return { low: Math.min(low, value), high: Math.max(high, value) };
 }
 
+/** The options that neither a slider nor a choice has: those of `hamel live`. */
+const othersOf = ({ options }) => Object.entries(options).filter(([name]) => !(name in SLIDERS) && !CHOICES.includes(name));
+
+const back = (name, take) => h('button', { type: 'button', class: 'back', title: `${name} as in the text`, 'aria-label': `${name} as in the text`, onclick: take }, '×');
+
 /** {name, unit, meaning, low, high, log, value or null}, change(value or null): a row; null takes what is moved back. */
 function slider({ name, unit, meaning, low, high, log, value, moved }, change) {
   const toBar = (x) => Math.round(STEPS * (log ? Math.log(x / low) / Math.log(high / low) : (x - low) / (high - low)));
@@ -32,9 +37,8 @@ function slider({ name, unit, meaning, low, high, log, value, moved }, change) {
   const clamped = (x) => Math.max(0, Math.min(STEPS, x));
   const bar = h('input', { type: 'range', min: 0, max: STEPS, 'aria-label': unit && unit !== '1' ? `${name}, ${unit}` : name, title: meaning || null });
   const exact = h('input', { type: 'number', step: 'any', class: 'exact', 'aria-label': `${name}, as a number` });
-  const back = h('button', { type: 'button', class: 'back', title: `${name} as in the text`, 'aria-label': `${name} as in the text`, onclick: () => change(null) }, '×');
   const row = h('div', { class: 'slider', 'data-name': name, title: meaning || null },
-    h('span', { class: 'name' }, name, unit && unit !== '1' ? h('span', { class: 'unit' }, ` ${unit}`) : null), bar, exact, back);
+    h('span', { class: 'name' }, name, unit && unit !== '1' ? h('span', { class: 'unit' }, ` ${unit}`) : null), bar, exact, back(name, () => change(null)));
   const show = (x, isMoved) => {
     row.classList.toggle('moved', isMoved);
     if (document.activeElement !== bar) bar.value = x === null ? 0 : clamped(toBar(x));
@@ -67,7 +71,7 @@ export class Controls {
 
   /** The rows of a system, whose values are those of the run that is shown; made anew where it has others. */
   show(system, state) {
-    const key = JSON.stringify([system.name, system.parameters.map(({ name, value, unit }) => [name, value.length, unit]), system.inputs.map(({ name }) => name), system.speed, state.text]);
+    const key = JSON.stringify([system.name, system.parameters.map(({ name, value, unit }) => [name, value.length, unit]), system.inputs.map(({ name }) => name), system.speed, state.text, othersOf(state)]);
     if (key !== this.key) this.#build(system, state);
     this.key = key;
     this.current = new Map(system.parameters.map(({ name, value }) => [name, value]));
@@ -100,6 +104,7 @@ export class Controls {
     const option = (name, about) => add(`options ${name}`, slider({ name, unit: of(name).unit, meaning: of(name).meaning, ...about,
       value: null, moved: false }, (value) => this.change('options', name, value === null ? null : String(value))));
     const run = [...Object.entries(SLIDERS).filter(([name]) => name !== 'speed' || system.speed).map(([name, about]) => option(name, about)),
+      ...othersOf(state).map(([name, value]) => h('div', { class: 'slider moved other', 'data-name': name, title: of(name).meaning || null }, h('span', { class: 'name' }, name), h('code', {}, value), back(name, () => this.change('options', name, null)))),
       h('div', { class: 'choices' }, CHOICES.map((name) => add(`options ${name}`, choice({ ...of(name), value: state.options[name] }, (value) => this.change('options', name, value)))))];
     const parameters = system.parameters.flatMap(({ name, value, unit, meaning, range }) => value.map((x, i) =>
       add(`parameters ${name} ${i}`, slider({ name: value.length > 1 ? `${name}[${i + 1}]` : name, unit, meaning, value: x, moved: false, ...reachOf(x, range) }, (given) => {

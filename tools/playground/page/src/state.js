@@ -65,7 +65,7 @@ export function commandOf(state, registered) {
   else words.push(file);
   for (const [name, value] of Object.entries(state.parameters)) words.push('--set', word(`${name}=${value.join(',')}`));
   for (const [name, value] of Object.entries(state.inputs)) words.push('--input', word(`${name}=${value}`));
-  for (const [name, value] of Object.entries(state.options)) words.push(`--${name.replaceAll('_', '-')}`, word(value));
+  for (const [name, value] of Object.entries(state.options)) words.push(`--${name.replaceAll('_', '-')}`, ...(value === 'true' ? [] : [word(value)]));  // that of a flag alone
   return words.join(' ');
 }
 
