@@ -31,6 +31,12 @@ FormulaText::FormulaText(const Recording& recording, Notation notation,
       names_(recording.nodes().size()) {
   count_uses(values);
   choose_names();
+  find_constants();
+  for (size_t k = 0; k < order_.size(); ++k) {
+    const std::string number = std::to_string(k + 1);
+    names_[static_cast<size_t>(order_[k])] =
+        notation == Notation::latex ? prefix_ + "_{" + number + '}' : prefix_ + number;
+  }
 }
 
 void FormulaText::count_uses(const std::vector<Number>& values) {
@@ -57,8 +63,7 @@ void FormulaText::choose_names() {
     if ((!again && sizes[i] <= (latex ? kLongestInLatex : kLongest)) || is_condition(n.op))
       continue;
     order_.push_back(static_cast<int>(i));
-    const std::string number = std::to_string(order_.size());
-    names_[i] = latex ? prefix_ + "_{" + number + '}' : prefix_ + number;
+    names_[i] = prefix_;
     sizes[i] = 0;
   }
 }
@@ -75,15 +80,6 @@ std::string FormulaText::text(const Number& x) const {
 
 // ---- formulas -----------------------------------------------------------------------------------
 
-bool FormulaText::is_sum(int i) const {
-  const Op op = node(i).op;
-  return op == Op::add || op == Op::subtract;
-}
-bool FormulaText::is_product(int i) const {
-  const Op op = node(i).op;
-  return op == Op::multiply || op == Op::divide || op == Op::negate;
-}
-
 FormulaText::Written FormulaText::written(int i) const {
   return named(i) ? Written{names_[static_cast<size_t>(i)], kAtom} : formula_of(i);
 }
@@ -95,77 +91,13 @@ std::string FormulaText::within(int i, int level) const {
 
 FormulaText::Written FormulaText::formula_of(int i) const {
   const Node& n = node(i);
+  if (known(i)) return {constant_text(*known(i), notation_), *known(i) < 0 ? kSum : kAtom};
   if (n.op == Op::input) return {inputs_[static_cast<size_t>(n.a)], kAtom};
   if (n.op == Op::constant) return {constant_text(n.value, notation_), n.value < 0 ? kSum : kAtom};
   if (is_sum(i)) return sum(i);
   if (is_product(i)) return product(i);
   if (n.op == Op::select || is_condition(n.op)) return choice(i);
   return call(i);
-}
-
-void FormulaText::collect_terms(int i, double sign, bool top,
-                                std::vector<std::pair<double, int>>& out) const {
-  const Node& n = node(i);
-  if ((!top && named(i)) || (!is_sum(i) && n.op != Op::negate)) {
-    out.emplace_back(sign, i);
-    return;
-  }
-  collect_terms(n.a, n.op == Op::negate ? -sign : sign, false, out);
-  if (n.op != Op::negate) collect_terms(n.b, n.op == Op::subtract ? -sign : sign, false, out);
-}
-
-struct FormulaText::Factors {
-  double coefficient = 1;
-  std::vector<std::pair<int, int>> powers;  // of nodes
-  void add(int node, int power) {
-    const auto known = std::ranges::find(powers, node, &std::pair<int, int>::first);
-    if (known == powers.end()) powers.emplace_back(node, power);
-    else known->second += power;
-  }
-};
-
-void FormulaText::collect_factors(int i, int power, bool top, Factors& out) const {
-  const Node& n = node(i);
-  if (n.op == Op::constant) {
-    out.coefficient *= std::pow(n.value, power);
-  } else if (!top && named(i)) {
-    out.add(i, power);
-  } else if (!is_product(i)) {
-    const std::vector<Factors> terms = is_sum(i) ? joined_terms(i) : std::vector<Factors>(2);
-    if (terms.size() > 1) return out.add(i, power);
-    out.coefficient *= terms.empty() ? 0 : std::pow(terms[0].coefficient, power);
-    if (terms.empty()) return;
-    for (const auto& [base, of_base] : terms[0].powers) out.add(base, power * of_base);
-  } else if (n.op == Op::negate) {
-    if (power % 2 != 0) out.coefficient = -out.coefficient;
-    collect_factors(n.a, power, false, out);
-  } else {
-    collect_factors(n.a, power, false, out);
-    collect_factors(n.b, n.op == Op::divide ? -power : power, false, out);
-  }
-}
-
-// Terms with the same factors are one; constants are the last.
-std::vector<FormulaText::Factors> FormulaText::joined_terms(int i) const {
-  std::vector<std::pair<double, int>> terms;
-  collect_terms(i, 1, true, terms);
-  std::vector<Factors> joined;
-  for (const auto& [sign, term] : terms) {
-    Factors factors;
-    factors.coefficient = sign;
-    collect_factors(term, 1, false, factors);
-    join_roots(factors);
-    const auto known = std::find_if(joined.begin(), joined.end(), [&](const Factors& f) {
-      return f.powers.size() == factors.powers.size() &&
-             std::is_permutation(f.powers.begin(), f.powers.end(), factors.powers.begin());
-    });
-    if (known == joined.end()) joined.push_back(factors);
-    else known->coefficient += factors.coefficient;
-  }
-  std::erase_if(joined, [](const Factors& f) { return f.coefficient == 0; });
-  std::stable_partition(joined.begin(), joined.end(),
-                        [](const Factors& f) { return !f.powers.empty(); });
-  return joined;
 }
 
 FormulaText::Written FormulaText::sum(int i) const {
@@ -182,21 +114,11 @@ FormulaText::Written FormulaText::sum(int i) const {
   return {out, joined.size() == 1 && out.front() != '-' ? kProduct : kSum};
 }
 
-// sqrt(x)^2 is x.
-void FormulaText::join_roots(Factors& factors) const {
-  Factors out{factors.coefficient, {}};
-  for (const auto& [base, power] : factors.powers) {
-    const bool root = node(base).op == Op::sqrt && !named(base) && power % 2 == 0;
-    if (root) collect_factors(node(base).a, power / 2, false, out);
-    else if (power != 0) out.add(base, power);
-  }
-  factors = out;
-}
-
 FormulaText::Written FormulaText::product(int i) const {
   Factors factors;
   collect_factors(i, 1, true, factors);
   join_roots(factors);
+  if (factors.coefficient == 0) return {constant_text(0, notation_), kAtom};
   const bool negative = factors.coefficient < 0;
   factors.coefficient = std::abs(factors.coefficient);
   return {(negative ? "-" : "") + product_text(factors), negative ? kSum : kProduct};

@@ -2,10 +2,12 @@
 //
 // Products and sums are written as such, x x as a power. A value has a name of its own where it is
 // used more than once and is not short, or where the formula that it is part of would be too long;
-// all others stand where they are used. Factors of a product may be in another order than recorded,
-// so that results are those of the program up to round-off.
+// all others stand where they are used. Terms that cancel are left out, sin^2 + cos^2 is 1. Factors
+// of a product may be in another order than recorded, so that results are those of the program up
+// to round-off.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,9 +33,16 @@ class FormulaText {
     std::string text;
     int level;
   };
-  struct Factors;
+  struct Factors {
+    double coefficient = 1;
+    std::vector<std::pair<int, int>> powers;  // of nodes
+    void add(int node, int power);
+    bool has_powers_of(const Factors& other) const;
+  };
   void count_uses(const std::vector<Number>& values);
   void choose_names();
+  void find_constants();
+  const std::optional<double>& known(int node) const { return known_[static_cast<size_t>(node)]; }
   bool named(int node) const { return !names_[static_cast<size_t>(node)].empty(); }
   const Node& node(int i) const { return recording_.nodes()[static_cast<size_t>(i)]; }
   bool is_sum(int i) const;
@@ -48,6 +57,10 @@ class FormulaText {
   void collect_terms(int i, double sign, bool top, std::vector<std::pair<double, int>>& out) const;
   std::vector<Factors> joined_terms(int i) const;
   void join_roots(Factors& factors) const;
+  static void add_term(std::vector<Factors>& terms, const Factors& term);
+  bool is_square_of(const std::pair<int, int>& power, Op op, int& angle) const;
+  bool join_squares(std::vector<Factors>& terms) const;
+  std::optional<double> constant_value(int i) const;
   void collect_factors(int i, int power, bool top, Factors& out) const;
   std::string power_text(int i, int power) const;
   std::string product_text(const Factors& factors) const;
@@ -57,8 +70,9 @@ class FormulaText {
   std::vector<std::string> inputs_;
   std::string prefix_;
   std::vector<int> uses_;
-  std::vector<std::string> names_;  // of nodes; "": where it is used
-  std::vector<int> order_;          // of those with names
+  std::vector<std::string> names_;            // of nodes; "": where it is used
+  std::vector<int> order_;                    // of those with names
+  std::vector<std::optional<double>> known_;  // of nodes that terms leave constant
 };
 
 }  // namespace hamel::graph

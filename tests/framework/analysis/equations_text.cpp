@@ -191,6 +191,20 @@ TEST(EquationsText, LatexIsBalanced) {
   }
 }
 
+// The sines of a steered wheel: sin^2 + cos^2 is 1, what cancels is left out.
+TEST(EquationsText, LeavesOutWhatCancels) {
+  for (const std::string& name : hamel::systems()) {
+    if (kRefused.contains(name)) continue;
+    SCOPED_TRACE(name);
+    const std::string text = Equations(hamel::simulate(name)).formulas("latex");
+    for (const char* part : {"\\frac{0}", "\\frac{0 ", " 0 \\,", "\\sqrt{1}"})
+      EXPECT_EQ(text.find(part), std::string::npos) << part;
+  }
+  const std::string scooter = Equations(hamel::simulate("kick_scooter")).formulas("latex");
+  EXPECT_THAT(scooter, testing::Not(HasSubstr("\\sqrt")));
+  EXPECT_THAT(scooter, HasSubstr("k_{1} &= "));
+}
+
 TEST(EquationsText, RefusesWhatHasNoFormulas) {
   EXPECT_THAT(refusal(Equations(hamel::simulate("suslov")), "latx"),
               testing::AllOf(HasSubstr("'latx'"), HasSubstr("did you mean 'latex'")));
