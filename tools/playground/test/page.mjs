@@ -1,12 +1,14 @@
 // node page.mjs BUILD: the playground in headless Chromium, as files behind a server and as one file from disk: first motion, an edit, a
-// mistake at its line, a slider, a shared address, every system in turn, the segway balanced by its keys, a cart driven, a phone's width.
+// mistake at its line, a slider, a shared address, every system in turn, the segway balanced by its keys, a cart driven, a phone's width, a file of `hamel live`.
 // Leaves pictures in BUILD/playground/looks. Exit status: 0 passed, 1 failed, 77 where the playground or a browser is missing.
 
+import { execFileSync } from 'node:child_process';
+import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { askCommands } from './ask_commands.mjs';
 import { balance, driveByHand } from './drive_page.mjs';
-import { address, after, browser, carryOut, CART, check, command, complete, drawings, isMistaken, looks, open, PATIENCE, site, write } from './visit.mjs';
+import { address, after, browser, build, carryOut, CART, check, command, complete, drawings, isMistaken, looks, open, PATIENCE, site, write } from './visit.mjs';
 
 const LITTLE = 1000000;  // bytes, before a server packs them: with what the speed of a line does to them, what the first motion takes
 
@@ -129,4 +131,20 @@ async function lookElsewhere() {
   await dark.context().close();
 }
 
-process.exit(await carryOut(lookAtFirst, lookAtFiles, balance, driveByHand, askCommands, lookElsewhere));
+/** `hamel live` with options of a run. */
+async function lookAtLive() {
+  const file = join(looks, 'live.html');
+  execFileSync(join(build, 'tools/hamel'), ['live', 'segway', '--until', '3', '--velocity', '0,1,0,4,4,0', '--no-open', '-o', file],
+    { env: { ...process.env, HAMEL_PLAYGROUND: join(site, 'playground.html') } });
+  const page = await open(pathToFileURL(file).href);
+  await complete(page);
+  check('live has the options of its run', (await command(page)) === 'hamel run segway --until 3 --velocity 0,1,0,4,4,0', await command(page));
+  check('and runs with them', !(await isMistaken(page)), await page.textContent('#mistakes'));
+  await after(page, () => page.click('[data-name="velocity"] .back'));
+  check('one without a slider can be taken back', (await command(page)) === 'hamel run segway --until 3', await command(page));
+  await page.context().close();
+  const text = readFileSync(file, 'utf8');
+  check('the page does not wait until the module is read', text.indexOf('id="module"') > text.lastIndexOf('<script>'));
+}
+
+process.exit(await carryOut(lookAtFirst, lookAtFiles, balance, driveByHand, askCommands, lookElsewhere, lookAtLive));
