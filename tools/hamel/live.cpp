@@ -80,7 +80,7 @@ nlohmann::json content_of(const std::string& system) {
   return {{"text", read_system_file(system)}};
 }
 
-// What goes before the text in it, in the page as sliders: options, parameters and inputs.
+// Options, parameters and inputs, which are sliders of the page and go before its text.
 void add_run(const LiveOptions& options, nlohmann::json& content) {
   if (!options.given.empty()) content["options"] = options.given;
   const Config& config = options.config;
