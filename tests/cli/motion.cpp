@@ -156,7 +156,7 @@ TEST_F(Live, TheTextIsInThePage) {
   EXPECT_THAT(contents(file("b.html")), HasSubstr("{\"system\":\"bicycle\"}"));
 }
 
-// As sliders of the page, which knows no tables.
+// Sliders of the page; it reads no tables.
 TEST_F(Live, OptionsOfARun) {
   const auto outcome = live({"segway", "-o", "s.html", "--until", "3", "--velocity", "0,1,0,0,0,0",
                              "--set", "gravity=9", "--input", "left_torque=2", "--no-exact"});
