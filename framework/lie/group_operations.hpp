@@ -94,6 +94,7 @@ struct GroupOperations {
   /// The doubles of an element, and it as a block of them.
   static constexpr int element_size() { return Packing<G>::size; }
   static void store(const Element& g, double* out) { Packing<G>::store(g, out); }
+  static void load(const double* from, Element& out) { out = Packing<G>::load(from); }
   // CSV columns.
   static constexpr int columns() { return static_cast<int>(coordinate_count<G>); }
   static void coordinates(const Element& g, double* out) {

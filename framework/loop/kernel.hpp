@@ -75,6 +75,14 @@ class Kernel {
   /// Without the coordinates too.
   void bare_state(Snapshot& out) const { state(out, {.coordinates = false, .measures = false}); }
   virtual const SolverStats& stats() const = 0;
+  /// Appends the current state to a log, and from now on each that comes after log->every steps:
+  /// advance() ends at one with a flaw. False, and nothing is done, where a kernel keeps none.
+  virtual bool log_to(StateLog* /*log*/) { return false; }
+  /// Appends the current state.
+  virtual void log_state() {}
+  /// A state of such a log, of a kernel for the same problem; this one's own state is lost.
+  virtual void measure(std::span<const double> /*logged*/, Snapshot& /*out*/,
+                       const StateParts& /*parts*/) {}
 
   /// The node itself, and that at the beginning of the last step: time, coordinates, and the
   /// velocity that is carried.

@@ -4,9 +4,11 @@
 // (time_loop.hpp); rare uses of a step's equation go through step_equation.hpp.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <span>
+#include <stdexcept>
 #include <vector>
 
 #include <hamel/framework/loop/implicit_solve.hpp>
@@ -53,6 +55,20 @@ class Loop final : public TimeLoop {
   using Kernel::state;
   [[gnu::cold]] void state(Snapshot& out, const StateParts& parts) const override {
     state(nodes_.now(), out, parts);
+  }
+  void measure(std::span<const double> logged, Snapshot& out, const StateParts& parts) override {
+    Node &now = nodes_.now(), &before = nodes_.previous();
+    const double* from = logged.data();
+    steps_ = static_cast<long>(from[StateLog::kStep]);
+    now.t = from[2];
+    before.t = from[3];
+    last_h_ = from[4];
+    last_.iterations = static_cast<int>(from[5]);
+    last_.residual = from[6];
+    xi_ = Eigen::Map<const typename P::Vector>(from += kNumbers, problem_.dim());
+    problem_.load(from += problem_.dim(), now.g);
+    problem_.load(from + problem_.element_size(), before.g);
+    state(now, xi_, logged[StateLog::kTime], out, parts);
   }
   [[gnu::cold]] void node(Snapshot& out) const override { carried(nodes_.now(), out); }
   [[gnu::cold]] void beginning(Snapshot& out) const override { carried(first_node(), out); }
@@ -118,21 +134,75 @@ class Loop final : public TimeLoop {
     out.time = node.t;
   }
   // A step that keeps its rows at its end by itself is measured there, others along the step.
-  [[gnu::cold]] void state(const Node& node, Snapshot& out, const StateParts& parts) const {
-    typename P::Vector& xi = xi_;
-    out.step = steps_;
-    out.time = &node == &nodes_.now() ? time() : node.t;
+  double measured_size() const {
+    if constexpr (kEstimates) return step_.estimated_order() > 0 ? 0 : last_h_;
+    return last_h_;
+  }
+  LastStep<typename P::Element> last_step(const Node& node) const {
+    return {nodes_.previous().g, nodes_.previous().t, node.g, node.t, measured_size()};
+  }
+  void nodal_velocity(const Node& node, typename P::Vector& xi) const {
     if constexpr (requires { step_.velocity(node, xi); }) step_.velocity(node, xi);
     else problem_.velocity(node.x, xi);
+  }
+  [[gnu::cold]] void state(const Node& node, Snapshot& out, const StateParts& parts) const {
+    nodal_velocity(node, xi_);
+    state(node, xi_, &node == &nodes_.now() ? time() : node.t, out, parts);
+  }
+  void state(const Node& node, const typename P::Vector& xi, double t, Snapshot& out,
+             const StateParts& parts) const {
+    out.step = steps_;
+    out.time = t;
     hamel::state(whole_, node.g, xi, out, parts);
     if (!parts.measures) return;
-    double h = last_h_;
-    if constexpr (kEstimates) h = step_.estimated_order() > 0 ? 0 : h;
-    hamel::measure(whole_, {nodes_.previous().g, nodes_.previous().t, node.g, node.t, h}, setup_.s,
-                   xi, out);
-    out.time_offset = (1 - setup_.s) * h;
+    hamel::measure(whole_, last_step(node), setup_.s, xi, out);
+    out.time_offset = (1 - setup_.s) * measured_size();
     out.iterations = last_.iterations;
     out.residual = last_.residual;
+  }
+
+  static constexpr std::size_t kNumbers = 7;  // of a logged state, before xi and both elements
+  bool append(StateLog& log) override {
+    const Node& now = nodes_.now();
+    nodal_velocity(now, xi_);
+    if (!is_state(now)) return false;
+    const auto n = static_cast<std::size_t>(problem_.dim()),
+               size = static_cast<std::size_t>(problem_.element_size());
+    log.width = kNumbers + n + 2 * size;
+    const std::size_t at = log.numbers.size();
+    log.numbers.resize(at + log.width);
+    double* to = log.numbers.data() + at;
+    const double numbers[kNumbers] = {
+        static_cast<double>(steps_),           time(),        now.t, nodes_.previous().t, last_h_,
+        static_cast<double>(last_.iterations), last_.residual};
+    to = std::copy_n(numbers, kNumbers, to);
+    to = std::copy_n(xi_.data(), n, to);
+    problem_.store(now.g, to);
+    problem_.store(nodes_.previous().g, to + size);
+    return true;
+  }
+  // Finite, an element of the group, and, where the step itself did not see to it, one that is
+  // recovered from its configurations.
+  bool is_state(const Node& node) {
+    if (!std::isfinite(xi_.squaredNorm())) return false;
+    coordinates_.resize(static_cast<std::size_t>(problem_.columns()));
+    problem_.coordinates(node.g, coordinates_.data());
+    double largest = 0;
+    for (const double x : coordinates_) largest += std::abs(x);
+    if constexpr (ExplicitStep<Step>) {
+      const LastStep<typename P::Element> last = last_step(node);
+      std::vector<double> rates;
+      if (last.h != 0 && !std::isfinite(recover_rates(whole_, last, setup_.s, xi_, rates)))
+        return false;
+    }
+    if (largest < 1e9 && problem_.defect(node.g) < 1e-7) return true;  // any group's own bounds
+    try {
+      typename P::Element g = problem_.element();
+      problem_.from_coordinates(coordinates_, g);
+    } catch (const std::invalid_argument&) {
+      return false;
+    }
+    return true;
   }
 
   static P problem_of(const Whole& whole) {
@@ -247,6 +317,7 @@ class Loop final : public TimeLoop {
   Step step_;
   P problem_;
   mutable typename P::Vector xi_ = P::Vector::Zero(problem_.dim());  // work space
+  std::vector<double> coordinates_;
   double last_h_ = 0;  // of the last substep; 0 before the first
   NodeRing<P> nodes_;
   State kept_[2];

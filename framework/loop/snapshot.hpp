@@ -2,6 +2,8 @@
 // Standard-library types only.
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -53,6 +55,25 @@ struct Snapshot {
   double time_offset = 0;   // from the velocity of constraint_rates to the state, s
   int iterations = 0;       // of the last step, all substeps
   double residual = 0;      // relative, the largest of the last step's substeps
+};
+
+/// States of a run as numbers alone, one after the other, from which a kernel of the same problem
+/// measures each later (Kernel::measure).
+struct StateLog {
+  static constexpr std::size_t kStep = 0, kTime = 1;  // within the numbers of a state
+
+  long every = 1;  // so many steps
+  std::size_t width = 0;
+  std::vector<double> numbers;
+  bool flawed = false;  // the state that came last is none, and is left out
+
+  std::size_t size() const { return width == 0 ? 0 : numbers.size() / width; }
+  std::span<const double> state(std::size_t i) const {
+    return std::span(numbers).subspan(i * width, width);
+  }
+  bool has(long step) const {
+    return size() > 0 && state(size() - 1)[kStep] == static_cast<double>(step);
+  }
 };
 
 }  // namespace hamel

@@ -34,6 +34,8 @@ Status TimeLoop::take_steps(long count) {
       return lost(report);
     tally(report);
     time_ = t_;
+    if (!logged()) [[unlikely]]
+      break;
   }
   return {};
 }
@@ -50,6 +52,8 @@ inline Status TimeLoop::take_plain_steps(long count) {
       if (!report.ok()) return lost(report);
     }
     tally(report);
+    if (!logged()) [[unlikely]]
+      break;
   }
   return {};
 }

@@ -60,11 +60,12 @@ int run(const RunOptions& options) {
                                      config.from + fraction * (config.until - config.from)));
     });
     try {
-      result = simulation.run();
+      result = simulation.run_unread();
     } catch (const Unfinished& reason) {
       throw Unfinished(reason.what() + kept(options));
     }
   }
+  if (!options.report.empty() || options.json || !options.quiet) result.read();
   if (!options.report.empty())
     pages::run_page(registry(), result, result.record()).write(options.report);
   if (options.json) say("{}\n", result.record());

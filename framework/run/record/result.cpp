@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -65,6 +66,11 @@ Result::Result(Result&&) noexcept = default;
 Result& Result::operator=(const Result&) = default;
 Result& Result::operator=(Result&&) noexcept = default;
 Result::~Result() = default;
+
+Result& Result::read() {
+  if (const auto rows = std::exchange(unread_, nullptr)) rows->read(*this);
+  return *this;
+}
 
 void Result::require_run(const char* member) const {
   if (system != nullptr) return;

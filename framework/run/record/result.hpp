@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <hamel/framework/io/errors.hpp>
@@ -65,6 +66,15 @@ struct EventMet {
   std::vector<double> velocity_after = {};  // where the event itself changes it, as an impact does
 };
 
+struct Result;
+/// Rows that are states alone until they are read.
+class HAMEL_API UnreadRows {
+ public:
+  virtual ~UnreadRows() = default;
+  /// Adds trajectory, measurements and their notes to the result of the run.
+  virtual void read(Result& out) = 0;
+};
+
 /// Without a run, made by default or moved from, record(), report() and write() throw
 /// std::logic_error.
 struct HAMEL_API Result : Measurements {
@@ -92,6 +102,11 @@ struct HAMEL_API Result : Measurements {
   double comparing_seconds = 0;  // beside them: equations of motion, invariants, exact motion
 
   explicit operator bool() const { return status.ok; }
+  /// Result of Simulation::run_unread: computes trajectory, the measurements and their notes, once;
+  /// before it they are empty.
+  Result& read();
+  /// Rows that are computed by read().
+  void unread(std::shared_ptr<UnreadRows> rows) { unread_ = std::move(rows); }
   /// "lift (s = 0.5), cayley, newton": the method, without what the scheme makes no use of.
   std::string method() const;
   /// "h = 0.01", or the tolerances that chose the steps.
@@ -107,6 +122,7 @@ struct HAMEL_API Result : Measurements {
 
  private:
   void require_run(const char* member) const;
+  std::shared_ptr<UnreadRows> unread_;
 };
 
 /// The two runs by which an error is estimated (check), described.

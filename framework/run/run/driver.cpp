@@ -41,14 +41,24 @@ void Driver::make_observers() {
   every_node_ = !times_.empty() || plan_.events->any() || rows_watch_ != nullptr ||
                 plan_.contacts != nullptr || follower_ != nullptr;
   if (!plan_.recording) return;
-  recorder_ = std::make_unique<RunRecorder>(*plan_.system, plan_.config.start, balance(),
+  recorder_ = std::make_shared<RunRecorder>(*plan_.system, plan_.config.start, balance(),
                                             plan_.reactions, plan_.motion, paths());
   if (!recorder_->missing_outputs().empty()) throw ConfigError(recorder_->missing_outputs());
   every_node_ = every_node_ || recorder_->wants_nodes();
+  logged_.reset();
+  if (may_log())
+    logged_ = std::make_shared<LoggedRows>(plan_.system, recorder_, plan_.kernel, plan_.setup,
+                                           request_.rows_kept.value_or(0));
   for (const std::string& path : request_.records) sinks_.push_back(make_sink(path));
   if (request_.records.empty() || request_.rows_kept)
     sinks_.push_back(make_memory_sink(result_.trajectory, request_.rows_kept.value_or(0)));
   for (const auto& sink : sinks_) resumable_ = resumable_ || sink->resumable();
+}
+
+// Not where something else depends on a row, or may change behind it.
+bool Driver::may_log() const {
+  return request_.to_be_read && request_.records.empty() && request_.resumed.empty() &&
+         !request_.observer && !plan_.config.check && plan_.setup.inputs == nullptr && !every_node_;
 }
 
 std::shared_ptr<const Mechanics> Driver::acting() const {
@@ -184,7 +194,12 @@ void Driver::begin() {
     kernel().measure(result_.last);
     recorder_->begin(result_.last);
     if (recorder_->wants_nodes()) recorder_->node(node_);
-    over_ = !(times_.empty() ? record_node() : output(plan_.config.from));
+    if (logged_ != nullptr) {
+      logged_->log.every = plan_.config.every;
+      if (!kernel().log_to(&logged_->log)) logged_.reset();
+    }
+    if (logged_ != nullptr) over_ = !logged();
+    else over_ = !(times_.empty() ? record_node() : output(plan_.config.from));
   }
   if (const auto met = take_switch()) over_ = over_ || !observe_switch(*met);
   if (!over_ && plan_.events->any()) observe_start();

@@ -16,6 +16,7 @@
 #include <hamel/framework/run/run/events.hpp>
 #include <hamel/framework/run/run/occupancy.hpp>
 #include <hamel/framework/run/run/plan/plan.hpp>
+#include <hamel/framework/run/run/rows/logged_rows.hpp>
 #include <hamel/framework/run/run/rows/rows_watch.hpp>
 #include <hamel/framework/run/run/rows/run_recorder.hpp>
 #include <hamel/framework/run/run/step_follower.hpp>
@@ -55,6 +56,8 @@ class Driver {
   const RunPlan& plan() const { return plan_; }
   const SolverStats& stats() const { return kernel().stats(); }
   long impacts_met() const { return impacts_met_; }
+  /// Rows and measurements of the result that are computed when they are read; null where all are.
+  LoggedRows* unread() const { return logged_.get(); }
   /// Impacts by the names of their events.
   const std::map<std::string, Impact>& impacts() const { return request_.impacts; }
   double next_step() const { return kernel().next_step(); }
@@ -113,6 +116,9 @@ class Driver {
   // Rows at the output times up to t.
   bool output(double t);
   bool record_node();
+  bool may_log() const;
+  // The steps up to now are in the log; false: the last ended in no state, and the run with it.
+  bool logged();
   bool record(Clock::time_point begin);
   // False, and the run has failed, where the state has a flaw; result_.last is the last good one.
   bool good(const Snapshot& state);
@@ -149,7 +155,8 @@ class Driver {
   mutable bool restarted_ = false;                   // and the kernel does not know it yet
   std::optional<StartMatrices> matrices_;  // of a restart, where they are the same everywhere
   std::unique_ptr<DenseOutput> dense_;     // made when it is first needed
-  std::unique_ptr<RunRecorder> recorder_;  // null where nothing is recorded
+  std::shared_ptr<LoggedRows> logged_;     // rows that are measured when they are read; null: all
+  std::shared_ptr<RunRecorder> recorder_;  // null where nothing is recorded
   StepFollower* follower_ = nullptr;       // the caller's
   StepWatch steps_;                        // of chosen ones
   long rejected_ = 0;                      // tries that it has counted

@@ -73,6 +73,10 @@ void Driver::measure_all() {
     const Timed compared(comparing_);
     return measure_ends_only();
   }
+  if (logged_ != nullptr) {
+    logged_->last = result_.last;
+    return result_.unread(logged_);
+  }
   {
     const Timed compared(comparing_);
     recorder_->finish(result_.last);
@@ -86,7 +90,12 @@ Result& Driver::end() {
   try {
     entered_ = Clock::now();
     begin();
-    if (plan_.recording && !over_ && times_.empty()) record_node();
+    if (logged_ != nullptr) {
+      if (!flawed_ && !logged_->log.has(node_.step)) kernel().log_state();
+      if (!flawed_) over_ = !logged();
+    } else if (plan_.recording && !over_ && times_.empty()) {
+      record_node();
+    }
     over_ = true;
     if (!result_.stopped_by_event && !flawed_) {
       kernel().measure(row_);

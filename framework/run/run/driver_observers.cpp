@@ -112,6 +112,19 @@ bool Driver::record_node() {
   return record(begin);
 }
 
+bool Driver::logged() {
+  logged_->bound();
+  if (!logged_->log.flawed) return true;
+  logged_->latest(result_.last);
+  kernel().measure(row_);
+  if (good(row_)) {  // but not for long: its numbers overflow
+    result_.status = {false, row_.step, result_.last.time, row_.residual,
+                      to_string(Reason::not_finite)};
+    flawed_ = true;
+  }
+  return false;
+}
+
 // The state in row_, measured since `begin`; row_ is another one afterwards.
 bool Driver::record(Clock::time_point begin) {
   const bool good_row = good(row_);

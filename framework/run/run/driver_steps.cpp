@@ -90,7 +90,7 @@ bool Driver::reached_end() const {
 long Driver::steps_at_once(long count, bool to_end) const {
   const long most = to_end ? steps_left_ : count;
   if (every_node_) return 1;
-  const long every = plan_.recording ? plan_.config.every : kRows;
+  const long every = plan_.recording && logged_ == nullptr ? plan_.config.every : kRows;
   const long piece = plan_.setup.on_failure == OnFailure::stop ? kRows : kRescued;
   return piece_of(std::min({every - node_.step % every, most, piece}));
 }
@@ -100,9 +100,10 @@ long Driver::steps_at_once(long count, bool to_end) const {
 bool Driver::observe_steps(long before, double begin, bool at_end) {
   if (!result_.status.ok && rows_watch_ != nullptr)
     result_.status.reason += rows_watch_->remark(node_);
-  bool go_on = good(node_);
+  bool go_on = logged_ != nullptr ? logged() : good(node_);
   if (go_on && every_node_ && node_.step > before) go_on = observe_step(begin);
-  else if (go_on && plan_.recording && times_.empty() && node_.step % plan_.config.every == 0)
+  else if (go_on && logged_ == nullptr && plan_.recording && times_.empty() &&
+           node_.step % plan_.config.every == 0)
     go_on = record_node();
   if (!go_on || !result_.status.ok || at_end) return go_on;
   result_.status = steps_go_on(node_.step - before, node_);
@@ -129,7 +130,7 @@ void Driver::take_steps(long count, bool to_end) {
       report_progress((node_.time - from) / (until - from));
       next_progress = Clock::now() + std::chrono::milliseconds(200);
     }
-    if (!over_ && !(to_end && reached_end()) && !kernel().off_grid() &&
+    if (!over_ && logged_ == nullptr && !(to_end && reached_end()) && !kernel().off_grid() &&
         (rows_ >= kRows || node_.step - kept_at_ >= kSteps))
       keep();
   }

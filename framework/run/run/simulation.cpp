@@ -141,10 +141,16 @@ Run Simulation::build() const {
 }
 
 Result Simulation::run() const {
+  Result out = run_unread();
+  return std::move(out.read());
+}
+
+Result Simulation::run_unread() const {
   Mistakes mistakes;
   RunPlan plan = plan_run(*registry_, request_, own_.get(), Rows::always, mistakes);
   mistakes.refuse();
   RunRequest request = request_;
+  request.to_be_read = true;
   if (request_.progress && request_.config.check)
     request.progress = [this](double done) {
       request_.progress(done / check_work(request_.config.completed(), 3));
@@ -153,7 +159,8 @@ Result Simulation::run() const {
   if (!request_.resumed.empty()) driver.resume(RunFile(request_.resumed));
   driver.complete();
   Result& result = driver.end();
-  add_notes(result, driver.impacts_met());
+  if (LoggedRows* rows = driver.unread()) rows->then = [](Result& out) { add_notes(out, 0); };
+  else add_notes(result, driver.impacts_met());
   check_error(*registry_, request_, own_.get(), driver.plan(), result);
   driver.close();
   return std::move(result);

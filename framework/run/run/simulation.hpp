@@ -59,6 +59,7 @@ struct RunRequest {
   std::vector<std::string> records;
   std::optional<size_t> rows_kept;
   std::string resumed;
+  bool to_be_read = false;  // the result: Result::read
 };
 
 class HAMEL_API Simulation {
@@ -181,6 +182,9 @@ class HAMEL_API Simulation {
   /// Steps to the end: a loop over Run. Throws ConfigError with all mistakes, before the first
   /// step.
   Result run() const;
+  /// The same, but trajectory, measurements and their notes are computed by Result::read(): until
+  /// then a row is (t, g, xi) where no function, file, event, input or work needs more of it.
+  Result run_unread() const;
   /// Derivatives along the run by parameters ("mass", "inertia2"), constant inputs and the start
   /// ("start.omega"). ConfigError names the nearest.
   Sensitivities sensitivities(const std::vector<std::string>& names) const;

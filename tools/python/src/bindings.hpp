@@ -129,14 +129,17 @@ class StoredResult {
  public:
   using Places = std::map<std::string, std::pair<size_t, size_t>>;  // first column, number of them
 
-  Result result;
   std::string source;  // as in Builder
-  // Texts of a pickled result, whose result.system is null; the last has notes in full.
+  // Texts of a pickled result, whose system is null; the last has notes in full.
   std::string record, report, verbose_report;
   Functions functions;  // of its system
 
   StoredResult(Result of, std::string text, Functions called = {})
-      : result(std::move(of)), source(std::move(text)), functions(std::move(called)) {}
+      : source(std::move(text)), functions(std::move(called)), result_(std::move(of)) {}
+  /// All of it, and what is there without its rows.
+  Result& read() { return result_.read(); }
+  const Result& read() const { return result_.read(); }
+  const Result& bare() const { return result_; }
   /// Columns, vectors and velocities by name; a column has the number 0. Found when first asked
   /// for.
   const Places& places() const;
@@ -148,6 +151,7 @@ class StoredResult {
 
  private:
   mutable Places places_;
+  mutable Result result_;
 };
 
 nb::object result_of(Result result, std::string source, const Functions& functions);

@@ -80,6 +80,7 @@ class Functions {
   }
   ~Functions() { clear(); }
 
+  bool empty() const { return cells_.empty(); }
   Function add(nb::handle object);
   void add(const Functions& others);
   bool any() const { return !cells_.empty(); }

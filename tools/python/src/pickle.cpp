@@ -78,7 +78,7 @@ Value get(const nb::dict& state, const char* key) {
 }  // namespace
 
 nb::dict pack(const StoredResult& stored) {
-  const Result& result = stored.result;
+  const Result& result = stored.read();
   nb::dict out;
   out["record"] = stored.record_text();
   out["report"] = stored.report_text(Notes::brief);

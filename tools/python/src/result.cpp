@@ -22,7 +22,7 @@ nb::object loads(const std::string& json) {
 // Rows as they lie in the result, which the array keeps alive.
 nb::object view(nb::handle self, size_t first, size_t columns, bool is_vector) {
   const auto& stored = nb::cast<const StoredResult&>(self);
-  const Trajectory& rows = stored.result.trajectory;
+  const Trajectory& rows = stored.read().trajectory;
   const double* data = rows.values().data() + first;
   const auto stride = static_cast<int64_t>(rows.columns().size());
   if (!is_vector) return nb::cast(ReadOnly(data, {rows.rows()}, self, {stride}));
@@ -45,7 +45,7 @@ nb::object item(nb::handle self, const std::string& name) {
 
 std::map<std::string, std::string> units_of(const StoredResult& stored) {
   std::map<std::string, std::string> out;
-  for (const ColumnGroup& group : stored.result.trajectory.groups()) {
+  for (const ColumnGroup& group : stored.read().trajectory.groups()) {
     const auto units = split(group.unit);
     const auto unit = [&](size_t i) { return i < units.size() ? units[i] : units.front(); };
     for (size_t i = 0; i < group.columns.size(); ++i) out[group.columns[i]] = unit(i);
@@ -63,7 +63,7 @@ void bind_measurements(nb::class_<StoredResult>& result) {
     texts_kept.push_back(std::string(quantity.meaning) + (unit == "1" ? "" : " [" + unit + "]") +
                          "; NaN where it is not measured");
     result.def_prop_ro(
-        name, [member](const StoredResult& s) { return s.result.*member; },
+        name, [member](const StoredResult& s) { return s.read().*member; },
         texts_kept.back().c_str());
   });
 }
@@ -80,13 +80,13 @@ void bind_rows(nb::class_<StoredResult>& result) {
       .def(
           "__iter__",
           [](const StoredResult& s) {
-            return nb::cast(s.result.trajectory.columns()).attr("__iter__")();
+            return nb::cast(s.read().trajectory.columns()).attr("__iter__")();
           },
           nb::sig("def __iter__(self) -> collections.abc.Iterator[str]"))
       .def(
-          "keys", [](const StoredResult& s) { return s.result.trajectory.columns(); },
+          "keys", [](const StoredResult& s) { return s.read().trajectory.columns(); },
           "The columns.")
-      .def("__len__", [](const StoredResult& s) { return s.result.trajectory.rows(); })
+      .def("__len__", [](const StoredResult& s) { return s.read().trajectory.rows(); })
       .def_prop_ro(
           "t", [](nb::handle self) { return item(self, "t"); },
           nb::sig("def t(self) -> numpy.typing.NDArray[numpy.float64]"),
@@ -95,23 +95,23 @@ void bind_rows(nb::class_<StoredResult>& result) {
           "values",
           [](nb::handle self) {
             const auto& s = nb::cast<const StoredResult&>(self);
-            return view(self, 0, s.result.trajectory.columns().size(), true);
+            return view(self, 0, s.read().trajectory.columns().size(), true);
           },
           nb::sig("def values(self) -> numpy.typing.NDArray[numpy.float64]"),
           "All rows, shape (rows, columns): a read-only view.")
-      .def_prop_ro("columns", [](const StoredResult& s) { return s.result.trajectory.columns(); })
+      .def_prop_ro("columns", [](const StoredResult& s) { return s.read().trajectory.columns(); })
       .def_prop_ro(
           "groups",
           [](const StoredResult& s) {
             std::map<std::string, std::vector<std::string>> out;
-            for (const ColumnGroup& g : s.result.trajectory.groups()) out[g.name] = g.columns;
+            for (const ColumnGroup& g : s.read().trajectory.groups()) out[g.name] = g.columns;
             return out;
           },
           "The columns of each vector or number.")
       .def_prop_ro(
           "names",
           [](const StoredResult& s) {
-            for (const ColumnGroup& g : s.result.trajectory.groups())
+            for (const ColumnGroup& g : s.read().trajectory.groups())
               if (g.name == "xi") return g.columns;
             return std::vector<std::string>();
           },
@@ -124,7 +124,7 @@ void bind_rows(nb::class_<StoredResult>& result) {
 const StoredResult::Places& StoredResult::places() const {
   size_t first = 0;
   if (!places_.empty()) return places_;
-  for (const ColumnGroup& group : result.trajectory.groups()) {
+  for (const ColumnGroup& group : read().trajectory.groups()) {
     const size_t n = group.columns.size();
     const auto add = [&](const std::string& name, size_t i) {
       places_.emplace(name, std::pair(first + i, size_t{0}));
@@ -135,7 +135,7 @@ const StoredResult::Places& StoredResult::places() const {
     first += n;
   }
   first = 0;
-  for (const ColumnGroup& group : result.trajectory.groups()) {  // behind the names of columns
+  for (const ColumnGroup& group : read().trajectory.groups()) {  // behind the names of columns
     for (const auto& [name, i] : group.other_names)
       places_.emplace(name, std::pair(first + i, size_t{0}));
     first += group.columns.size();
@@ -144,33 +144,33 @@ const StoredResult::Places& StoredResult::places() const {
 }
 
 std::string StoredResult::report_text(Notes length) const {
-  if (result.system != nullptr) return result.report(length);
+  if (read().system != nullptr) return read().report(length);
   return length == Notes::brief ? report : verbose_report;
 }
 
 std::string StoredResult::record_text() const {
-  return result.system == nullptr ? record : result.record();
+  return read().system == nullptr ? record : read().record();
 }
 
 void StoredResult::restore_system() {
-  if (result.system != nullptr) return;
+  if (read().system != nullptr) return;
   Simulation again =
-      source.empty() ? simulate(result.config.system) : simulate_text(source, result.config.system);
-  const Result fresh = again.config(result.config).build().finish();
+      source.empty() ? simulate(read().config.system) : simulate_text(source, read().config.system);
+  const Result fresh = again.config(read().config).build().finish();
   const size_t columns = fresh.last.coordinates.size(), n = fresh.last.velocity.size();
-  const Trajectory& rows = result.trajectory;
-  if (result.last.coordinates.size() != columns || result.last.velocity.size() != n ||
-      result.last.momentum.size() != n ||
+  const Trajectory& rows = read().trajectory;
+  if (read().last.coordinates.size() != columns || read().last.velocity.size() != n ||
+      read().last.momentum.size() != n ||
       (rows.rows() > 0 && rows.columns().size() < 1 + columns + n))
     throw ConfigError({"a damaged pickle of a Result: its numbers are not those of the system '" +
-                       result.config.system + "'"});
-  result.system = fresh.system;
-  result.inputs = fresh.inputs;
+                       read().config.system + "'"});
+  read().system = fresh.system;
+  read().inputs = fresh.inputs;
 }
 
 void StoredResult::write(const std::string& path) {
   restore_system();
-  result.write(path);
+  read().write(path);
 }
 
 nb::object result_of(Result result, std::string source, const Functions& functions) {
@@ -203,12 +203,12 @@ void bind_result(nb::module_& m) {
   bind_rows(result);
   bind_measurements(result);
   const auto member = [](auto Result::*of) {
-    return [of](const StoredResult& s) { return s.result.*of; };
+    return [of](const StoredResult& s) { return s.bare().*of; };
   };
   result.def_prop_ro("status", member(&Result::status))
-      .def("__bool__", [](const StoredResult& s) { return s.result.status.ok; })
+      .def("__bool__", [](const StoredResult& s) { return s.bare().status.ok; })
       .def_prop_ro("config", member(&Result::config), "As it was run, the start filled in.")
-      .def_prop_ro("notes", member(&Result::notes))
+      .def_prop_ro("notes", [](const StoredResult& s) { return s.read().notes; })
       .def_prop_ro("unused", member(&Result::unused), "Options that the scheme makes no use of.")
       .def_prop_ro("steps", member(&Result::steps))
       .def_prop_ro("events", member(&Result::events))
@@ -217,13 +217,14 @@ void bind_result(nb::module_& m) {
       .def_prop_ro("seconds", member(&Result::seconds), "Of the time loop, recording included.")
       .def_prop_ro("recording_seconds", member(&Result::recording_seconds),
                    "Of these, to measure and write states.")
-      .def_prop_ro("comparing_seconds", member(&Result::comparing_seconds),
-                   "Beside them: equations of motion, invariants, exact motion.")
+      .def_prop_ro(
+          "comparing_seconds", [](const StoredResult& s) { return s.read().comparing_seconds; },
+          "Beside them: equations of motion, invariants, exact motion.")
       .def_prop_ro(
           "last",
           [](const StoredResult& s) {
-            const auto& system = s.result.system;
-            return NamedState{s.result.last,
+            const auto& system = s.bare().system;
+            return NamedState{s.bare().last,
                               system ? std::make_shared<const StateNames>(*system) : nullptr};
           },
           "The last good state.")
@@ -231,7 +232,7 @@ void bind_result(nb::module_& m) {
           "invariants",
           [](const StoredResult& s) {
             std::map<std::string, double> out;
-            for (const InvariantDrift& drift : s.result.invariants)
+            for (const InvariantDrift& drift : s.read().invariants)
               out[drift.name] = drift.drift_max;
             return out;
           },
@@ -254,7 +255,7 @@ void bind_result(nb::module_& m) {
           "write_page",
           [](StoredResult& s, nb::handle path) {
             s.restore_system();
-            write_page(registry(), s.result, text("path", path));
+            write_page(registry(), s.read(), text("path", path));
           },
           "path"_a, nb::sig("def write_page(self, path: str | os.PathLike[str]) -> None"),
           "The page of hamel run --report, one HTML file that a browser opens from disk.")
@@ -277,10 +278,10 @@ void bind_result(nb::module_& m) {
       .def("__str__", [](const StoredResult& s) { return s.report_text(Notes::brief); })
       .def("__repr__",
            [](const StoredResult& s) {
-             return "<hamel.Result of " + s.result.config.system + ": " +
-                    (s.result.status.ok ? "ok" : "failed") + ", " + std::to_string(s.result.steps) +
-                    " steps to t = " + text_of(s.result.last.time) + ", " +
-                    std::to_string(s.result.trajectory.rows()) + " rows>";
+             return "<hamel.Result of " + s.read().config.system + ": " +
+                    (s.read().status.ok ? "ok" : "failed") + ", " + std::to_string(s.read().steps) +
+                    " steps to t = " + text_of(s.read().last.time) + ", " +
+                    std::to_string(s.read().trajectory.rows()) + " rows>";
            })
       .def("__getstate__", [](const StoredResult& s) { return pack(s); })
       .def("__setstate__", [](StoredResult& s, const nb::dict& state) { unpack(s, state); });
@@ -289,7 +290,7 @@ void bind_result(nb::module_& m) {
                "shows each.",
                [](StoredResult& s) {
                  s.restore_system();
-                 return figures::of_run(registry(), s.result);
+                 return figures::of_run(registry(), s.read());
                });
 }
 

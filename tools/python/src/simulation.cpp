@@ -66,7 +66,8 @@ Simulation watched(const Builder& builder) {
 Result run(const Builder& builder) {
   const Simulation simulation = watched(builder);
   const Away free;
-  return simulation.run();
+  if (!builder.functions.empty()) return simulation.run();  // called while it runs
+  return simulation.run_unread();
 }
 
 void bind_simulation(nb::module_& m) {
