@@ -9,6 +9,7 @@
 #include <memory>
 #include <span>
 #include <stdexcept>
+#include <type_traits>
 #include <vector>
 
 #include <hamel/framework/loop/implicit_solve.hpp>
@@ -66,8 +67,8 @@ class Loop final : public TimeLoop {
     last_.iterations = static_cast<int>(from[5]);
     last_.residual = from[6];
     xi_ = Eigen::Map<const typename P::Vector>(from += kNumbers, problem_.dim());
-    problem_.load(from += problem_.dim(), now.g);
-    problem_.load(from + problem_.element_size(), before.g);
+    get(from += problem_.dim(), now.g);
+    get(from + numbers_of(now.g), before.g);
     state(now, xi_, logged[StateLog::kTime], out, parts);
   }
   [[gnu::cold]] void node(Snapshot& out) const override { carried(nodes_.now(), out); }
@@ -162,12 +163,27 @@ class Loop final : public TimeLoop {
   }
 
   static constexpr std::size_t kNumbers = 7;  // of a logged state, before xi and both elements
+  // Elements as a step has them: of a problem whose sizes are known at run time, in its own layout.
+  using Element = typename P::Element;
+  static constexpr bool kSized = std::is_same_v<Element, Eigen::VectorXd>;
+  Eigen::Index numbers_of(const Element& g) const {
+    if constexpr (kSized) return g.size();
+    else return problem_.element_size();
+  }
+  void put(const Element& g, double* to) const {
+    if constexpr (kSized) std::copy_n(g.data(), g.size(), to);
+    else problem_.store(g, to);
+  }
+  void get(const double* from, Element& g) const {
+    if constexpr (kSized) std::copy_n(from, g.size(), g.data());
+    else problem_.load(from, g);
+  }
   bool append(StateLog& log) override {
     const Node& now = nodes_.now();
     nodal_velocity(now, xi_);
     if (!is_state(now)) return false;
     const auto n = static_cast<std::size_t>(problem_.dim()),
-               size = static_cast<std::size_t>(problem_.element_size());
+               size = static_cast<std::size_t>(numbers_of(now.g));
     log.width = kNumbers + n + 2 * size;
     const std::size_t at = log.numbers.size();
     log.numbers.resize(at + log.width);
@@ -177,8 +193,8 @@ class Loop final : public TimeLoop {
         static_cast<double>(last_.iterations), last_.residual};
     to = std::copy_n(numbers, kNumbers, to);
     to = std::copy_n(xi_.data(), n, to);
-    problem_.store(now.g, to);
-    problem_.store(nodes_.previous().g, to + size);
+    put(now.g, to);
+    put(nodes_.previous().g, to + size);
     return true;
   }
   // Finite, an element of the group, and, where the step itself did not see to it, one that is

@@ -83,7 +83,6 @@ class DynamicProblem {
   }
   int element_size() const { return geometry_->size(); }
   static void store(const Element& g, double* out) { std::copy(g.begin(), g.end(), out); }
-  static void load(const double* from, Element& out) { std::copy_n(from, out.size(), out.data()); }
   int columns() const { return geometry_->columns(); }
   void coordinates(const Element& g, double* out) const { geometry_->coordinates(g.data(), out); }
   void from_coordinates(std::span<const double> values, Element& out) const {
