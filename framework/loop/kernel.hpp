@@ -75,11 +75,13 @@ class Kernel {
   /// Without the coordinates too.
   void bare_state(Snapshot& out) const { state(out, {.coordinates = false, .measures = false}); }
   virtual const SolverStats& stats() const = 0;
-  /// Appends the current state to a log, and from now on each that comes after log->every steps:
-  /// advance() ends at one with a flaw. False, and nothing is done, where a kernel keeps none.
-  virtual bool log_to(StateLog* /*log*/) { return false; }
-  /// Appends the current state.
-  virtual void log_state() {}
+  /// From now on appends each state that comes after log->every steps to a log (0: none):
+  /// advance() ends at one with a flaw. False, and nothing is done, where a kernel keeps none;
+  /// within: states within steps too.
+  virtual bool log_to(StateLog* /*log*/, bool /*within*/) { return false; }
+  /// Appends the current state, or one within the last step by the scheme's own dense output, as
+  /// of time t; false where it has none there.
+  virtual bool log_state(double /*t*/) { return false; }
   /// A state of such a log, of a kernel for the same problem; this one's own state is lost.
   virtual void measure(std::span<const double> /*logged*/, Snapshot& /*out*/,
                        const StateParts& /*parts*/) {}

@@ -71,6 +71,27 @@ class Loop final : public TimeLoop {
     get(from + numbers_of(now.g), before.g);
     state(now, xi_, logged[StateLog::kTime], out, parts);
   }
+  bool log_to(StateLog* log, bool within) override {
+    if constexpr (kEstimates) within = within && step_.estimated_order() <= 0;
+    if (within) return false;
+    log_ = log;
+    return true;
+  }
+  bool log_state(double t) override {
+    const double h = time() - beginning_time();
+    if (std::abs(t - time()) <= 1e-12 * std::abs(h == 0 ? h_ : h)) {
+      append(nodes_.now(), t);
+      return true;
+    }
+    if constexpr (kEstimates) {
+      if ((t - time()) * h_ > 0 || !has_dense_output() ||
+          !step_.interpolate(part_of_step(t), nodes_.next()))
+        return false;
+      append(nodes_.next(), t);
+      return true;
+    }
+    return false;
+  }
   [[gnu::cold]] void node(Snapshot& out) const override { carried(nodes_.now(), out); }
   [[gnu::cold]] void beginning(Snapshot& out) const override { carried(first_node(), out); }
   double beginning_time() const override { return first_node().t; }
@@ -178,24 +199,29 @@ class Loop final : public TimeLoop {
     if constexpr (kSized) std::copy_n(from, g.size(), g.data());
     else problem_.load(from, g);
   }
-  bool append(StateLog& log) override {
-    const Node& now = nodes_.now();
+  void log_node() override { append(nodes_.now(), time()); }
+  void append(const Node& now, double t) {
+    StateLog& log = *log_;
     nodal_velocity(now, xi_);
-    if (!is_state(now)) return false;
+    log.flawed = log.flawed || !is_state(now);
+    if (log.flawed) return;
     const auto n = static_cast<std::size_t>(problem_.dim()),
                size = static_cast<std::size_t>(numbers_of(now.g));
     log.width = kNumbers + n + 2 * size;
     const std::size_t at = log.numbers.size();
     log.numbers.resize(at + log.width);
     double* to = log.numbers.data() + at;
-    const double numbers[kNumbers] = {
-        static_cast<double>(steps_),           time(),        now.t, nodes_.previous().t, last_h_,
-        static_cast<double>(last_.iterations), last_.residual};
+    const double numbers[kNumbers] = {static_cast<double>(steps_),
+                                      t,
+                                      now.t,
+                                      nodes_.previous().t,
+                                      last_h_,
+                                      static_cast<double>(last_.iterations),
+                                      last_.residual};
     to = std::copy_n(numbers, kNumbers, to);
     to = std::copy_n(xi_.data(), n, to);
     put(now.g, to);
     put(nodes_.previous().g, to + size);
-    return true;
   }
   // Finite, an element of the group, and, where the step itself did not see to it, one that is
   // recovered from its configurations.

@@ -28,14 +28,6 @@ class TimeLoop : public Kernel {
   void set_end_time(double t) final { limit_ = t; }
   double next_step() const final { return h_; }
   void turn_back() final { reverse(); }
-  bool log_to(StateLog* log) final {
-    log_ = log;
-    log_state();
-    return true;
-  }
-  void log_state() final {
-    if (!append(*log_)) log_->flawed = true;
-  }
   void restart(double t, std::span<const double> coordinates, std::span<const double> velocity,
                double step) final {
     put(t, coordinates, velocity);
@@ -73,8 +65,10 @@ class TimeLoop : public Kernel {
   virtual void put(double t, std::span<const double> coordinates,
                    std::span<const double> velocity) = 0;
 
-  /// The node; false, and nothing is done, where it is no state.
-  virtual bool append(StateLog& log) = 0;
+  /// The node to the log.
+  virtual void log_node() = 0;
+
+  StateLog* log_ = nullptr;
 
   bool chooses_steps() const { return setup_.errors.chooses_steps(); }
 
@@ -97,11 +91,10 @@ class TimeLoop : public Kernel {
  private:
   // False: the steps end here.
   bool logged() {
-    if (log_ == nullptr || steps_ % log_->every != 0) return true;
-    log_state();
+    if (log_ == nullptr || log_->every == 0 || steps_ % log_->every != 0) return true;
+    log_node();
     return !log_->flawed;
   }
-  StateLog* log_ = nullptr;
 
   Status take_steps(long count);
   Status take_plain_steps(long count);

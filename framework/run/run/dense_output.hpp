@@ -16,8 +16,11 @@ class DenseOutput {
   DenseOutput(Kernel& kernel, KernelFactory factory, KernelSetup setup);
   /// The state at t, measured. Not ok where the step to it fails.
   Status at(double t, Snapshot& out);
+  /// Appends the state to a log, where the kernel itself has none there.
+  Status log(double t, StateLog& log);
 
  private:
+  Status step_to(double t, bool ahead);
   Kernel& kernel_;
   KernelFactory factory_;
   KernelSetup setup_;              // with steps of one size

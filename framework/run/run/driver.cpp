@@ -58,7 +58,9 @@ void Driver::make_observers() {
 // Not where something else depends on a row, or may change behind it.
 bool Driver::may_log() const {
   return request_.to_be_read && request_.records.empty() && request_.resumed.empty() &&
-         !request_.observer && !plan_.config.check && plan_.setup.inputs == nullptr && !every_node_;
+         !request_.observer && !plan_.config.check && plan_.setup.inputs == nullptr &&
+         !plan_.events->any() && plan_.contacts == nullptr && follower_ == nullptr &&
+         rows_watch_ == nullptr && !recorder_->wants_nodes();
 }
 
 std::shared_ptr<const Mechanics> Driver::acting() const {
@@ -195,11 +197,10 @@ void Driver::begin() {
     recorder_->begin(result_.last);
     if (recorder_->wants_nodes()) recorder_->node(node_);
     if (logged_ != nullptr) {
-      logged_->log.every = plan_.config.every;
-      if (!kernel().log_to(&logged_->log)) logged_.reset();
+      logged_->log.every = times_.empty() ? plan_.config.every : 0;
+      if (!kernel().log_to(&logged_->log, !times_.empty())) logged_.reset();
     }
-    if (logged_ != nullptr) over_ = !logged();
-    else over_ = !(times_.empty() ? record_node() : output(plan_.config.from));
+    over_ = !(times_.empty() ? record_node() : output(plan_.config.from));
   }
   if (const auto met = take_switch()) over_ = over_ || !observe_switch(*met);
   if (!over_ && plan_.events->any()) observe_start();

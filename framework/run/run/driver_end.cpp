@@ -90,12 +90,7 @@ Result& Driver::end() {
   try {
     entered_ = Clock::now();
     begin();
-    if (logged_ != nullptr) {
-      if (!flawed_ && !logged_->log.has(node_.step)) kernel().log_state();
-      if (!flawed_) over_ = !logged();
-    } else if (plan_.recording && !over_ && times_.empty()) {
-      record_node();
-    }
+    if (plan_.recording && !over_ && times_.empty()) record_node();
     over_ = true;
     if (!result_.stopped_by_event && !flawed_) {
       kernel().measure(row_);

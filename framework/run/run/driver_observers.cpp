@@ -93,18 +93,25 @@ bool Driver::output(double t) {
     const double wanted = times_[next_];
     // Behind a switch no motion is continued, not even by round-off.
     const double at = plan_.contacts != nullptr ? std::min(wanted, kernel().time()) : wanted;
-    if (const Status status = dense().at(at, row_); !status.ok) {
+    const bool known = logged_ != nullptr && kernel().log_state(wanted);
+    Status status;
+    if (!known) status = logged_ != nullptr ? dense().log(at, logged_->log) : dense().at(at, row_);
+    if (!status.ok) {
       result_.status = status;
       return false;
     }
     row_.time = wanted;
-    if (!record(begin)) return false;
+    if (!(logged_ != nullptr ? logged() : record(begin))) return false;
   }
   return true;
 }
 
 // The node, unless it is a row already.
 bool Driver::record_node() {
+  if (logged_ != nullptr) {
+    if (!logged_->log.has(node_.step)) kernel().log_state(kernel().time());
+    return logged();
+  }
   if (node_.step == recorded_) return true;
   recorded_ = node_.step;
   const Clock::time_point begin = Clock::now();

@@ -100,7 +100,7 @@ long Driver::steps_at_once(long count, bool to_end) const {
 bool Driver::observe_steps(long before, double begin, bool at_end) {
   if (!result_.status.ok && rows_watch_ != nullptr)
     result_.status.reason += rows_watch_->remark(node_);
-  bool go_on = logged_ != nullptr ? logged() : good(node_);
+  bool go_on = logged_ != nullptr && times_.empty() ? logged() : good(node_);
   if (go_on && every_node_ && node_.step > before) go_on = observe_step(begin);
   else if (go_on && logged_ == nullptr && plan_.recording && times_.empty() &&
            node_.step % plan_.config.every == 0)

@@ -45,6 +45,8 @@ TEST(UnreadRows, AreThoseOfARunThatIsObserved) {
       simulate("suslov").scheme("lift").step(0.01).until(2),
       simulate("suslov").compose("kahan_li6").scheme("lift").step(0.05).until(2).every(7),
       simulate("suslov").until(5),
+      simulate("suslov").scheme("dop853").tolerance({1e-9}).until(5),
+      simulate("bicycle").scheme("lift").step(0.01).output(0.013).until(0.5),
       simulate("falling_disk").scheme("rkmk4").step(0.01).until(1),
       simulate("rattleback").scheme("balance").retraction("exp").step(0.01).until(1),
       simulate("bicycle").until(0.5),

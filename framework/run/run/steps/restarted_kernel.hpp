@@ -31,8 +31,8 @@ class RestartedKernel final : public Kernel {
   using Kernel::state;
   void state(Snapshot& out, const StateParts& parts) const override;
   const SolverStats& stats() const override;
-  bool log_to(StateLog* log) override { return kernel_->log_to(log); }
-  void log_state() override { kernel_->log_state(); }
+  bool log_to(StateLog* log, bool within) override { return kernel_->log_to(log, within); }
+  bool log_state(double t) override { return kernel_->log_state(t); }
   void node(Snapshot& out) const override { kernel_->node(out); }
   void beginning(Snapshot& out) const override { kernel_->beginning(out); }
   double time() const override { return kernel_->time(); }
