@@ -8,11 +8,11 @@
 #include <cmath>
 #include <memory>
 #include <span>
-#include <stdexcept>
 #include <type_traits>
 #include <vector>
 
 #include <hamel/framework/loop/implicit_solve.hpp>
+#include <hamel/framework/loop/logged_element.hpp>
 #include <hamel/framework/loop/measure.hpp>
 #include <hamel/framework/loop/node_ring.hpp>
 #include <hamel/framework/loop/step_control.hpp>
@@ -66,9 +66,9 @@ class Loop final : public TimeLoop {
     last_h_ = from[4];
     last_.iterations = static_cast<int>(from[5]);
     last_.residual = from[6];
-    xi_ = Eigen::Map<const typename P::Vector>(from += kNumbers, problem_.dim());
-    get(from += problem_.dim(), now.g);
-    get(from + numbers_of(now.g), before.g);
+    xi_ = Eigen::Map<const typename P::Vector>(from += StateLog::kNumbers, problem_.dim());
+    load_element(problem_, from += problem_.dim(), now.g);
+    load_element(problem_, from + logged_size(problem_, now.g), before.g);
     state(now, xi_, logged[StateLog::kTime], out, parts);
   }
   bool log_to(StateLog* log, bool within) override {
@@ -183,68 +183,37 @@ class Loop final : public TimeLoop {
     out.residual = last_.residual;
   }
 
-  static constexpr std::size_t kNumbers = 7;  // of a logged state, before xi and both elements
-  // Elements as a step has them: of a problem whose sizes are known at run time, in its own layout.
-  using Element = typename P::Element;
-  static constexpr bool kSized = std::is_same_v<Element, Eigen::VectorXd>;
-  Eigen::Index numbers_of(const Element& g) const {
-    if constexpr (kSized) return g.size();
-    else return problem_.element_size();
-  }
-  void put(const Element& g, double* to) const {
-    if constexpr (kSized) std::copy_n(g.data(), g.size(), to);
-    else problem_.store(g, to);
-  }
-  void get(const double* from, Element& g) const {
-    if constexpr (kSized) std::copy_n(from, g.size(), g.data());
-    else problem_.load(from, g);
-  }
   void log_node() override { append(nodes_.now(), time()); }
   void append(const Node& now, double t) {
     StateLog& log = *log_;
     nodal_velocity(now, xi_);
     log.flawed = log.flawed || !is_state(now);
     if (log.flawed) return;
-    const auto n = static_cast<std::size_t>(problem_.dim()),
-               size = static_cast<std::size_t>(numbers_of(now.g));
-    log.width = kNumbers + n + 2 * size;
-    const std::size_t at = log.numbers.size();
-    log.numbers.resize(at + log.width);
-    double* to = log.numbers.data() + at;
-    const double numbers[kNumbers] = {static_cast<double>(steps_),
-                                      t,
-                                      now.t,
-                                      nodes_.previous().t,
-                                      last_h_,
-                                      static_cast<double>(last_.iterations),
-                                      last_.residual};
-    to = std::copy_n(numbers, kNumbers, to);
+    const std::size_t size = logged_size(problem_, now.g);
+    const auto n = static_cast<std::size_t>(problem_.dim());
+    double* to = log.append(StateLog::kNumbers + n + 2 * size);
+    const double numbers[StateLog::kNumbers] = {static_cast<double>(steps_),
+                                                t,
+                                                now.t,
+                                                nodes_.previous().t,
+                                                last_h_,
+                                                static_cast<double>(last_.iterations),
+                                                last_.residual};
+    to = std::copy_n(numbers, StateLog::kNumbers, to);
     to = std::copy_n(xi_.data(), n, to);
-    put(now.g, to);
-    put(nodes_.previous().g, to + size);
+    log_element(problem_, now.g, to);
+    log_element(problem_, nodes_.previous().g, to + size);
   }
   // Finite, an element of the group, and, where the step itself did not see to it, one that is
   // recovered from its configurations.
   bool is_state(const Node& node) {
-    if (!std::isfinite(xi_.squaredNorm())) return false;
-    coordinates_.resize(static_cast<std::size_t>(problem_.columns()));
-    problem_.coordinates(node.g, coordinates_.data());
-    double largest = 0;
-    for (const double x : coordinates_) largest += std::abs(x);
+    if (!std::isfinite(xi_.squaredNorm()) || !std::isfinite(whole_.potential(node.g))) return false;
     if constexpr (ExplicitStep<Step>) {
       const LastStep<typename P::Element> last = last_step(node);
-      std::vector<double> rates;
-      if (last.h != 0 && !std::isfinite(recover_rates(whole_, last, setup_.s, xi_, rates)))
+      if (last.h != 0 && !std::isfinite(recover_rates(whole_, last, setup_.s, xi_, rates_)))
         return false;
     }
-    if (largest < 1e9 && problem_.defect(node.g) < 1e-7) return true;  // any group's own bounds
-    try {
-      typename P::Element g = problem_.element();
-      problem_.from_coordinates(coordinates_, g);
-    } catch (const std::invalid_argument&) {
-      return false;
-    }
-    return true;
+    return is_element(problem_, node.g, coordinates_);
   }
 
   static P problem_of(const Whole& whole) {
@@ -359,7 +328,7 @@ class Loop final : public TimeLoop {
   Step step_;
   P problem_;
   mutable typename P::Vector xi_ = P::Vector::Zero(problem_.dim());  // work space
-  std::vector<double> coordinates_;
+  std::vector<double> coordinates_, rates_;                          // of what is logged
   double last_h_ = 0;  // of the last substep; 0 before the first
   NodeRing<P> nodes_;
   State kept_[2];

@@ -61,6 +61,7 @@ struct Snapshot {
 /// measures each later (Kernel::measure).
 struct StateLog {
   static constexpr std::size_t kStep = 0, kTime = 1;  // within the numbers of a state
+  static constexpr std::size_t kNumbers = 7;          // before the velocity and both elements
 
   long every = 1;  // so many steps
   std::size_t width = 0;
@@ -68,6 +69,13 @@ struct StateLog {
   bool flawed = false;  // the state that came last is none, and is left out
 
   std::size_t size() const { return width == 0 ? 0 : numbers.size() / width; }
+  /// Room for one more.
+  double* append(std::size_t of) {
+    width = of;
+    const std::size_t at = numbers.size();
+    numbers.resize(at + of);
+    return numbers.data() + at;
+  }
   std::span<const double> state(std::size_t i) const {
     return std::span(numbers).subspan(i * width, width);
   }

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include <hamel/hamel.hpp>
+#include <hamel/systems/by_text.hpp>
 
 namespace hamel {
 namespace {
@@ -73,6 +74,41 @@ TEST(UnreadRows, AreThoseOfARunThatIsObserved) {
     for (std::size_t i = 0; i < late.invariants.size(); ++i)
       EXPECT_EQ(late.invariants[i].drift_max, at_once.invariants[i].drift_max);
   }
+}
+
+// The derivative of ln(x) is finite where it is none itself.
+TEST(UnreadRows, EndAtAPotentialThatIsNoNumber) {
+  const char text[] = R"toml(name = "logarithm"
+group = "r2"
+coordinates = ["x", "y"]
+inertia = [1, 1]
+potential = "ln(x)"
+configuration = [0.5, 0]
+velocity = [-1, 0]
+)toml";
+  Simulation simulation = simulate_text(text, "logarithm");
+  simulation.scheme("rkmk4").step(0.1).until(2);
+  const Result late = simulation.run_unread();
+  EXPECT_FALSE(late.status.ok);
+  const Result at_once = simulation.observe([](const Snapshot&) { return true; }).run();
+  EXPECT_FALSE(at_once.status.ok);
+  EXPECT_EQ(late.status.reason, at_once.status.reason);
+  EXPECT_EQ(late.status.time, at_once.status.time);
+  EXPECT_EQ(late.last.time, at_once.last.time);
+  EXPECT_GT(late.last.time, 0);
+}
+
+// Of long runs that keep few rows, states do not pile up.
+TEST(UnreadRows, AreBounded) {
+  Simulation simulation = simulate("suslov").scheme("lift").step(0.001).until(250).keep_rows(50);
+  const Result late = simulation.run();
+  const Result at_once = simulation.observe([](const Snapshot&) { return true; }).run();
+  EXPECT_GT(late.steps * 20, 1 << 22);
+  EXPECT_LE(late.trajectory.rows(), 51u);
+  EXPECT_EQ(late.trajectory.stride(), at_once.trajectory.stride());
+  EXPECT_TRUE(std::ranges::equal(late.trajectory.values(), at_once.trajectory.values()));
+  EXPECT_EQ(late.energy_error_max, at_once.energy_error_max);
+  EXPECT_EQ(late.last.energy, at_once.last.energy);
 }
 
 TEST(UnreadRows, OutliveTheirSimulation) {
